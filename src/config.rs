@@ -1,0 +1,101 @@
+//! Every setting of the program, in one place: command-line flag, environment variable, default.
+
+use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// Which adapters may be used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AdapterPolicy {
+    /// A GPU, or refuse to start.
+    Gpu,
+    /// A CPU driver (software Vulkan), or refuse to start.
+    Software,
+    /// A GPU if there is one, else a CPU driver; which one is said in logs, `/v1/info` and every stats block.
+    #[default]
+    Any,
+}
+
+/// Settings of the renderer.
+#[derive(Clone, Debug, Args)]
+pub struct RenderConfig {
+    /// Which adapters may be used.
+    #[arg(long, env = "CAUSTICA_ADAPTER", value_enum, default_value_t = AdapterPolicy::Any, global = true)]
+    pub adapter: AdapterPolicy,
+    /// GPU memory one frame may hold, MiB; a plan above it is refused before anything is allocated.
+    #[arg(long, env = "CAUSTICA_MEMORY_BUDGET_MIB", default_value_t = 2048, global = true)]
+    pub memory_budget_mib: u64,
+    /// GPU memory for cached level maps, MiB.
+    #[arg(long, env = "CAUSTICA_LEVEL_MAP_BUDGET_MIB", default_value_t = 64, global = true)]
+    pub level_map_budget_mib: u64,
+    /// Folder to write every assembled shader to.
+    #[arg(long, env = "CAUSTICA_SHADER_DUMP", global = true)]
+    pub shader_dump: Option<std::path::PathBuf>,
+}
+
+impl Default for RenderConfig {
+    fn default() -> Self {
+        Self { adapter: AdapterPolicy::Any, memory_budget_mib: 2048, level_map_budget_mib: 64, shader_dump: None }
+    }
+}
+
+/// What a request may ask for at most; published in `/v1/info`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Args, Serialize, Deserialize, ToSchema)]
+pub struct Limits {
+    /// Largest request body, bytes.
+    #[arg(long, env = "CAUSTICA_MAX_BODY_BYTES", default_value_t = 67_108_864, global = true)]
+    pub max_body_bytes: usize,
+    /// Largest picture, pixels.
+    #[arg(long, env = "CAUSTICA_MAX_PIXELS", default_value_t = 33_554_432, global = true)]
+    pub max_pixels: u64,
+    /// Most triangles of one mesh.
+    #[arg(long, env = "CAUSTICA_MAX_TRIANGLES", default_value_t = 1_000_000, global = true)]
+    pub max_triangles: usize,
+    /// Most objects in a scene.
+    #[arg(long, env = "CAUSTICA_MAX_OBJECTS", default_value_t = 256, global = true)]
+    pub max_objects: usize,
+    /// Most lights in a scene.
+    #[arg(long, env = "CAUSTICA_MAX_LIGHTS", default_value_t = 16, global = true)]
+    pub max_lights: usize,
+    /// Most wave components in a scene.
+    #[arg(long, env = "CAUSTICA_MAX_WAVES", default_value_t = 256, global = true)]
+    pub max_waves: usize,
+    /// Host memory for uploaded meshes, bytes; beyond it an upload is refused.
+    #[arg(long, env = "CAUSTICA_MESH_STORE_BYTES", default_value_t = 1_073_741_824, global = true)]
+    pub mesh_store_bytes: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            max_body_bytes: 67_108_864,
+            max_pixels: 33_554_432,
+            max_triangles: 1_000_000,
+            max_objects: 256,
+            max_lights: 16,
+            max_waves: 256,
+            mesh_store_bytes: 1_073_741_824,
+        }
+    }
+}
+
+/// Settings of `caustica serve`.
+#[derive(Clone, Debug, Args)]
+pub struct ServeConfig {
+    /// Address to listen on.
+    #[arg(long, env = "CAUSTICA_LISTEN", default_value = "127.0.0.1:8080")]
+    pub listen: std::net::SocketAddr,
+    /// Requests that may wait for the GPU; one more is answered 429.
+    #[arg(long, env = "CAUSTICA_QUEUE", default_value_t = 16)]
+    pub queue: usize,
+    /// Seconds from arrival after which a request is answered 503.
+    #[arg(long, env = "CAUSTICA_DEADLINE_S", default_value_t = 120)]
+    pub deadline_s: u64,
+    /// Seconds that `/readyz` answers 503 on shutdown before connections are refused.
+    #[arg(long, env = "CAUSTICA_DRAIN_S", default_value_t = 0)]
+    pub drain_s: u64,
+    /// Log as JSON lines.
+    #[arg(long, env = "CAUSTICA_LOG_JSON")]
+    pub log_json: bool,
+}

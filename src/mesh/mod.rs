@@ -1,0 +1,52 @@
+//! Meshes: OBJ and MTL in (`obj`), what was mended (`report`), a ray hierarchy over the triangles (`hierarchy`), and the store (`store`).
+
+pub mod hierarchy;
+pub mod obj;
+pub mod store;
+
+use glam::{DVec3, Vec3};
+
+pub use hierarchy::HierarchyNode;
+pub use obj::MeshError;
+pub use store::MeshStore;
+
+/// A triangle mesh, immutable after reading.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// `blake3:<hex>` of the uploaded bytes.
+    pub id: String,
+    /// Middle of the bounds in file coordinates, m; everything below is relative to it, so that detail survives f32.
+    pub origin_m: DVec3,
+    /// Lower corner of the bounds, relative to `origin_m`, m.
+    pub min_m: Vec3,
+    /// Upper corner of the bounds, relative to `origin_m`, m.
+    pub max_m: Vec3,
+    /// Triangles; none is degenerate.
+    pub triangles: Vec<Triangle>,
+    /// Materials; never empty.
+    pub materials: Vec<Material>,
+    /// Skip-pointer hierarchy over `triangles`, in traversal order.
+    pub hierarchy: Vec<HierarchyNode>,
+    /// What was mended or left out while reading, one sentence each.
+    pub warnings: Vec<crate::stats::Warning>,
+}
+
+/// One triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// Corners relative to the mesh's origin, m, counter-clockwise seen from outside where the file is.
+    pub positions_m: [Vec3; 3],
+    /// Unit shading normals at the corners; the file's where it has them, else the face normal.
+    pub normals: [Vec3; 3],
+    /// Index into the mesh's materials.
+    pub material: u32,
+}
+
+/// A diffuse material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name in the file; empty for the default material.
+    pub name: String,
+    /// Diffuse reflectance (MTL `Kd`), 0 … 1 per channel; 0.8 without a material.
+    pub albedo: [f32; 3],
+}

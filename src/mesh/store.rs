@@ -1,0 +1,5 @@
+//! Meshes by id.
+
+/// Meshes by content id.
+#[derive(Debug, Default)]
+pub struct MeshStore {}

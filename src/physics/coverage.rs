@@ -1,0 +1,30 @@
+//! How much of a texel a footprint covers, in closed form.
+
+/// Mean of clamp(x, 0, w) for x running evenly from `x_a` to `x_b`, `w` ≥ 0; one edge's share of a texel's coverage.
+///
+/// With c = clamp(x, 0, w) and m = max(x, w): ((c_b − c_a)(c_a + c_b)/2 + w (m_b − m_a)) / (x_b − x_a); every quotient stays
+/// in 0 … 1, so nothing blows up for a vertical edge. (Ours.)
+pub fn mean_clamped(x_a: f64, x_b: f64, w: f64) -> f64 {
+    let c_a = x_a.clamp(0.0, w);
+    let c_b = x_b.clamp(0.0, w);
+    let d = x_b - x_a;
+    if d == 0.0 {
+        return c_a;
+    }
+    (c_b - c_a) / d * 0.5 * (c_a + c_b) + w * ((x_b.max(w) - x_a.max(w)) / d)
+}
+
+/// Share of a tent density on `t_0` ≤ `t_peak` ≤ `t_1` that lies below `t`; the density a triangle's flux has along its
+/// longest side when its area vanishes. 0 at t_0, (t_peak − t_0)/(t_1 − t_0) at the peak, 1 at t_1. (Ours.)
+pub fn tent_share_below(t: f64, t_0: f64, t_peak: f64, t_1: f64) -> f64 {
+    let length = t_1 - t_0;
+    if t <= t_0 {
+        0.0
+    } else if t >= t_1 {
+        1.0
+    } else if t < t_peak {
+        (t - t_0) / length * ((t - t_0) / (t_peak - t_0))
+    } else {
+        1.0 - (t_1 - t) / length * ((t_1 - t) / (t_1 - t_peak))
+    }
+}

@@ -1,0 +1,34 @@
+//! Snell's law and mirror reflection as vectors.
+
+use glam::DVec3;
+
+/// Refracted unit direction of unit `direction` at unit `normal` (against the direction), `eta` = n_to / n_from.
+///
+/// t = d/η + (cos_i/η − cos_t) n. `None` at total internal reflection. Source: Heckbert, "Writing a Ray Tracer", in
+/// Glassner (ed.), An Introduction to Ray Tracing (1989), §4.
+pub fn refract_direction(direction: DVec3, normal: DVec3, eta: f64) -> Option<DVec3> {
+    let cos_i = -direction.dot(normal);
+    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
+    if sin2_t >= 1.0 {
+        return None;
+    }
+    let cos_t = (1.0 - sin2_t).sqrt();
+    Some((direction / eta + normal * (cos_i / eta - cos_t)).normalize())
+}
+
+/// Mirror direction of unit `direction` at unit `normal`: d − 2 (d·n) n.
+pub fn reflect_direction(direction: DVec3, normal: DVec3) -> DVec3 {
+    direction - normal * (2.0 * direction.dot(normal))
+}
+
+/// Unit normal (up) of a surface y = h(x, z) with slopes ∂h/∂x and ∂h/∂z.
+pub fn normal_from_slope(slope_x: f64, slope_z: f64) -> DVec3 {
+    DVec3::new(-slope_x, 1.0, -slope_z).normalize()
+}
+
+/// Unit direction towards a light at elevation and azimuth (rad): (cos e cos a, sin e, cos e sin a).
+pub fn direction_to_light(elevation_rad: f64, azimuth_rad: f64) -> DVec3 {
+    let (sin_e, cos_e) = elevation_rad.sin_cos();
+    let (sin_a, cos_a) = azimuth_rad.sin_cos();
+    DVec3::new(cos_e * cos_a, sin_e, cos_e * sin_a)
+}

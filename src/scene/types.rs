@@ -1,0 +1,625 @@
+//! What a request may say, field by field. Every default stands here once; `openapi.yaml` is generated from these types.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::parse::{inner, integral_u32, optional_integral_u32, tagged};
+
+/// A scene: water, receivers, lights, a camera and what to make of them.
+///
+/// Right-handed, Y up, metres, seconds, SI radiometry; angles in degrees; linear RGB (Rec. 709 primaries).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// The water body. Default: flat water at y = 0 with ior 1.333 and no absorption.
+    #[serde(default)]
+    pub water: Water,
+    /// The rectangular floor under the water; absent: bottomless.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub floor: Option<Floor>,
+    /// Suns and skies; may be empty (a black picture).
+    #[serde(default)]
+    pub lights: Vec<Light>,
+    /// Mesh instances.
+    #[serde(default)]
+    pub objects: Vec<Object>,
+    /// Where the picture is taken from; needed by `output.kind = "view"` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<Camera>,
+    /// The dials that trade accuracy for time.
+    #[serde(default)]
+    pub quality: Quality,
+    /// What to make.
+    #[serde(default)]
+    pub output: Output,
+    /// Moment of the frame, s. Default 0. Range −10¹² … 10¹².
+    #[serde(default)]
+    pub time_s: f64,
+}
+
+/// The water body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Water {
+    /// Wave components, added up. Default: none, flat water.
+    pub waves: Vec<Wave>,
+    /// Height of the water at rest, m. Default 0.
+    pub level_m: f64,
+    /// Index of refraction relative to air, 1 … 4. Default 1.333.
+    pub ior: f64,
+    /// Absorption coefficient a per channel, 1/m, 0 … 10⁴. Default 0.
+    pub absorption_per_m: [f64; 3],
+    /// Scattering coefficient b per channel, 1/m, 0 … 10⁴. Default 0. Beams lose it (c = a + b);
+    /// light scattered into the picture is not simulated, and a warning says how much flux that is.
+    pub scattering_per_m: [f64; 3],
+    /// How a wave's period follows from its wavelength when `period_s` is not given. Default `finite_depth`.
+    pub dispersion: Dispersion,
+}
+
+impl Default for Water {
+    fn default() -> Self {
+        Self {
+            waves: Vec::new(),
+            level_m: 0.0,
+            ior: 1.333,
+            absorption_per_m: [0.0; 3],
+            scattering_per_m: [0.0; 3],
+            dispersion: Dispersion::default(),
+        }
+    }
+}
+
+/// Dispersion relation of gravity waves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Dispersion {
+    /// ω² = g k.
+    Deep,
+    /// ω² = g k tanh(k d), d = `floor.depth_m`; without a floor the same as `deep`.
+    #[default]
+    FiniteDepth,
+}
+
+/// One wave component, told apart by `kind`.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum Wave {
+    /// `kind = "sine"`.
+    Sine(SineWave),
+}
+
+impl<'de> Deserialize<'de> for Wave {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        tagged(deserializer, None, &["sine"], |_, value| inner(value).map(Self::Sine))
+    }
+}
+
+/// h(x, z, t) = A sin(2π/λ (x cos θ + z sin θ) − ω t + φ).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SineWave {
+    /// Always `sine`.
+    pub kind: SineKind,
+    /// A, m, 0 … 100.
+    pub amplitude_m: f64,
+    /// λ, m, 10⁻³ … 10⁵.
+    pub wavelength_m: f64,
+    /// θ, degrees from +X towards +Z. Default 0.
+    #[serde(default)]
+    pub direction_deg: f64,
+    /// φ, degrees. Default 0.
+    #[serde(default)]
+    pub phase_deg: f64,
+    /// 2π/ω, s, above 0; absent: from the dispersion relation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period_s: Option<f64>,
+}
+
+/// The rectangular, horizontal floor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Floor {
+    /// Distance below the water at rest, m, 0 … 11 000.
+    pub depth_m: f64,
+    /// Extent along x and z, m, above 0.
+    pub size_m: [f64; 2],
+    /// Centre (x, z), m. Default (0, 0).
+    #[serde(default)]
+    pub center_m: [f64; 2],
+    /// Diffuse reflectance per channel, 0 … 1. Default (0.7, 0.65, 0.5), pale sand.
+    #[serde(default = "default_floor_albedo")]
+    pub albedo: [f64; 3],
+}
+
+fn default_floor_albedo() -> [f64; 3] {
+    [0.7, 0.65, 0.5]
+}
+
+/// A light, told apart by `kind`.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum Light {
+    /// `kind = "sun"`.
+    Sun(Sun),
+    /// `kind = "sky"`.
+    Sky(Sky),
+}
+
+impl<'de> Deserialize<'de> for Light {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        tagged(deserializer, None, &["sun", "sky"], |kind, value| match kind {
+            "sun" => inner(value).map(Self::Sun),
+            _ => inner(value).map(Self::Sky),
+        })
+    }
+}
+
+/// Parallel light from direction (cos e cos a, sin e, cos e sin a).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sun {
+    /// Always `sun`.
+    pub kind: SunKind,
+    /// Height above the horizon e, degrees, −90 … 90; at or below 0 the sun gives no light, and the plan says so.
+    pub elevation_deg: f64,
+    /// Azimuth a, degrees from +X towards +Z. Default 0.
+    #[serde(default)]
+    pub azimuth_deg: f64,
+    /// Irradiance per channel on a plane facing the sun, W/m², 0 … 10⁹.
+    pub irradiance_w_m2: [f64; 3],
+}
+
+/// A uniform sky over the whole upper hemisphere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sky {
+    /// Always `sky`.
+    pub kind: SkyKind,
+    /// Radiance per channel, W/(m² sr), 0 … 10⁹.
+    pub radiance_w_m2_sr: [f64; 3],
+}
+
+/// A mesh placed in the world: p_world = translation + rotation · (scale · p_mesh).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Object {
+    /// Mesh id (`blake3:…`) from `POST /v1/meshes`; in a scene file also a path relative to the file.
+    pub mesh: String,
+    /// Translation, m. Default (0, 0, 0).
+    #[serde(default)]
+    pub translation_m: [f64; 3],
+    /// Rotation as quaternion (x, y, z, w), of length 1 ± 10⁻³ (normalised on reading). Default: none.
+    #[serde(default = "identity_rotation")]
+    pub rotation: [f64; 4],
+    /// Scale: one number or (x, y, z), each above 0. Default 1.
+    #[serde(default)]
+    pub scale: Scale,
+    /// Diffuse reflectance per channel, 0 … 1; absent: the mesh's materials.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub albedo: Option<[f64; 3]>,
+}
+
+fn identity_rotation() -> [f64; 4] {
+    [0.0, 0.0, 0.0, 1.0]
+}
+
+/// One factor, or one per axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum Scale {
+    /// The same along all axes.
+    Uniform(f64),
+    /// Along x, y, z of the mesh.
+    PerAxis([f64; 3]),
+}
+
+impl Default for Scale {
+    fn default() -> Self {
+        Self::Uniform(1.0)
+    }
+}
+
+impl Scale {
+    /// The factor along each axis.
+    pub fn per_axis(self) -> [f64; 3] {
+        match self {
+            Self::Uniform(s) => [s; 3],
+            Self::PerAxis(s) => s,
+        }
+    }
+}
+
+/// A camera, told apart by `kind` (default `perspective`).
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum Camera {
+    /// `kind = "perspective"`.
+    Perspective(PerspectiveCamera),
+    /// `kind = "orthographic"`.
+    Orthographic(OrthographicCamera),
+}
+
+impl<'de> Deserialize<'de> for Camera {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        tagged(deserializer, Some("perspective"), &["perspective", "orthographic"], |kind, value| match kind {
+            "orthographic" => inner(value).map(Self::Orthographic),
+            _ => inner(value).map(Self::Perspective),
+        })
+    }
+}
+
+impl Camera {
+    /// Position, target and up direction.
+    pub fn pose(&self) -> ([f64; 3], [f64; 3], [f64; 3]) {
+        match self {
+            Self::Perspective(c) => (c.position_m, c.target_m, c.up),
+            Self::Orthographic(c) => (c.position_m, c.target_m, c.up),
+        }
+    }
+}
+
+/// A pinhole camera; square pixels, the picture's aspect follows from width and height.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PerspectiveCamera {
+    /// `perspective`, may be left out.
+    #[serde(default)]
+    pub kind: PerspectiveKind,
+    /// Eye, m.
+    pub position_m: [f64; 3],
+    /// The point in the middle of the picture, m; not the eye.
+    pub target_m: [f64; 3],
+    /// Up direction, any length above 0, not along the view. Default (0, 1, 0).
+    #[serde(default = "default_up")]
+    pub up: [f64; 3],
+    /// Full vertical field of view, degrees, 0.1 … 179. Default 45.
+    #[serde(default = "default_fov")]
+    pub vertical_fov_deg: f64,
+}
+
+/// A camera with parallel rays.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OrthographicCamera {
+    /// Always `orthographic`.
+    pub kind: OrthographicKind,
+    /// Middle of the image plane, m.
+    pub position_m: [f64; 3],
+    /// The point in the middle of the picture, m; not the position.
+    pub target_m: [f64; 3],
+    /// Up direction, any length above 0, not along the view. Default (0, 1, 0).
+    #[serde(default = "default_up")]
+    pub up: [f64; 3],
+    /// Height of the picture in the world, m, above 0.
+    pub height_m: f64,
+}
+
+fn default_up() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn default_fov() -> f64 {
+    45.0
+}
+
+/// The dials that trade accuracy for time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Quality {
+    /// How light is carried to the receivers. Default `level_map`.
+    pub method: Method,
+    /// Where on a mesh a beam ends. Default `hit`.
+    pub placement: Placement,
+    /// Water cells along each side of a light's window, 2 … 2048. Default 256. The error falls with its square.
+    #[serde(deserialize_with = "integral_u32")]
+    #[schema(minimum = 2, maximum = 2048)]
+    pub water_cells: u32,
+    /// Texels along the longer side of the floor's irradiance map of a view, 16 … 4096. Default 512.
+    #[serde(deserialize_with = "integral_u32")]
+    #[schema(minimum = 16, maximum = 4096)]
+    pub map_texels: u32,
+    /// Texels along each side of a mesh's level map and of its irradiance map, 16 … 2048. Default 256.
+    #[serde(deserialize_with = "integral_u32")]
+    #[schema(minimum = 16, maximum = 2048)]
+    pub level_map_texels: u32,
+    /// How often beams that straddle receivers are halved, 0 … 4. Default 2.
+    #[serde(deserialize_with = "integral_u32")]
+    #[schema(minimum = 0, maximum = 4)]
+    pub split_levels: u32,
+}
+
+impl Default for Quality {
+    fn default() -> Self {
+        Self {
+            method: Method::LevelMap,
+            placement: Placement::Hit,
+            water_cells: 256,
+            map_texels: 512,
+            level_map_texels: 256,
+            split_levels: 2,
+        }
+    }
+}
+
+/// How light is carried to the receivers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Beams between exact hits on floor and level maps (Tipprasert 2006).
+    #[default]
+    LevelMap,
+}
+
+/// Where on a mesh a beam ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Placement {
+    /// Rays are marched into the level map until they cross it.
+    #[default]
+    Hit,
+}
+
+/// What to make, told apart by `kind`.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum Output {
+    /// `kind = "view"`: what the camera sees.
+    View(ViewOutput),
+    /// `kind = "irradiance_map"`: irradiance on a receiver, by texel.
+    IrradianceMap(IrradianceMapOutput),
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self::View(ViewOutput::default())
+    }
+}
+
+impl<'de> Deserialize<'de> for Output {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        tagged(deserializer, None, &["view", "irradiance_map"], |kind, value| match kind {
+            "irradiance_map" => inner(value).map(Self::IrradianceMap),
+            _ => inner(value).map(Self::View),
+        })
+    }
+}
+
+impl Output {
+    /// How the result is written to a file.
+    pub fn encoding(&self) -> Encoding {
+        match self {
+            Self::View(o) => Encoding {
+                format: o.format,
+                png_bits: o.png_bits,
+                exposure_ev: o.exposure_ev,
+                tone_curve: o.tone_curve,
+                exr_pixel: o.exr_pixel,
+            },
+            Self::IrradianceMap(o) => Encoding {
+                format: o.format,
+                png_bits: o.png_bits,
+                exposure_ev: o.exposure_ev,
+                tone_curve: o.tone_curve,
+                exr_pixel: ExrPixel::Float,
+            },
+        }
+    }
+}
+
+/// What the camera sees.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ViewOutput {
+    /// Always `view`.
+    pub kind: ViewKind,
+    /// Picture width, pixels, 1 … 16384. Default 960.
+    #[serde(default = "default_width", deserialize_with = "integral_u32")]
+    #[schema(minimum = 1, maximum = 16384)]
+    pub width: u32,
+    /// Picture height, pixels, 1 … 16384. Default 540.
+    #[serde(default = "default_height", deserialize_with = "integral_u32")]
+    #[schema(minimum = 1, maximum = 16384)]
+    pub height: u32,
+    /// File format. Default `png`.
+    #[serde(default)]
+    pub format: ImageFormat,
+    /// Bits per PNG channel, 8 or 16. Default 8. EXR ignores it.
+    #[serde(default = "default_png_bits", deserialize_with = "integral_u32")]
+    #[schema(minimum = 8, maximum = 16)]
+    pub png_bits: u32,
+    /// Exposure in stops relative to the scene's own (see `stats.exposure`), −40 … 40. Default 0. PNG only: EXR stays unexposed.
+    #[serde(default)]
+    pub exposure_ev: f64,
+    /// Tone curve of PNG. Default `pbr_neutral`.
+    #[serde(default)]
+    pub tone_curve: ToneCurve,
+    /// Number type of the EXR channels R G B A, `albedo.*`; the rest is always float. Default `half`.
+    #[serde(default)]
+    pub exr_pixel: ExrPixel,
+    /// Layers to compute and write; PNG holds `radiance` only. Default [`radiance`].
+    #[serde(default = "default_layers")]
+    pub layers: Vec<LayerName>,
+}
+
+impl Default for ViewOutput {
+    fn default() -> Self {
+        Self {
+            kind: ViewKind::default(),
+            width: default_width(),
+            height: default_height(),
+            format: ImageFormat::default(),
+            png_bits: default_png_bits(),
+            exposure_ev: 0.0,
+            tone_curve: ToneCurve::default(),
+            exr_pixel: ExrPixel::default(),
+            layers: default_layers(),
+        }
+    }
+}
+
+fn default_width() -> u32 {
+    960
+}
+
+fn default_height() -> u32 {
+    540
+}
+
+fn default_png_bits() -> u32 {
+    8
+}
+
+fn default_layers() -> Vec<LayerName> {
+    vec![LayerName::Radiance]
+}
+
+/// Irradiance on a receiver, by texel.
+///
+/// On the floor texel (i, j) is centred at x = min + (i + ½)Δ, z = min + (j + ½)Δ, row 0 at min z. On a mesh the map is the
+/// one its level map spans: `quality.level_map_texels` squared, and `min_m`, `max_m`, `width`, `height` are not accepted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IrradianceMapOutput {
+    /// Always `irradiance_map`.
+    pub kind: IrradianceMapKind,
+    /// `"floor"` or an index into `objects`.
+    pub receiver: Receiver,
+    /// Lower corner (x, z) on the floor, m. Floor only; default: the floor's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min_m: Option<[f64; 2]>,
+    /// Upper corner (x, z) on the floor, m. Floor only; default: the floor's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_m: Option<[f64; 2]>,
+    /// Texels along x, 1 … 8192. Floor only; default 512.
+    #[serde(default, deserialize_with = "optional_integral_u32", skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 1, maximum = 8192)]
+    pub width: Option<u32>,
+    /// Texels along z, 1 … 8192. Floor only; default 512.
+    #[serde(default, deserialize_with = "optional_integral_u32", skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 1, maximum = 8192)]
+    pub height: Option<u32>,
+    /// Index into `lights` of the only sun to count; needed on a mesh when there are several suns. Default: all.
+    #[serde(default, deserialize_with = "optional_integral_u32", skip_serializing_if = "Option::is_none")]
+    pub light: Option<u32>,
+    /// Whether skies count too. Default false.
+    #[serde(default)]
+    pub include_sky: bool,
+    /// File format. Default `exr`, channels R, G, B as float, W/m².
+    #[serde(default = "default_map_format")]
+    pub format: ImageFormat,
+    /// Bits per PNG channel, 8 or 16. Default 8.
+    #[serde(default = "default_png_bits", deserialize_with = "integral_u32")]
+    #[schema(minimum = 8, maximum = 16)]
+    pub png_bits: u32,
+    /// Exposure of PNG in stops relative to the scene's own, −40 … 40. Default 0.
+    #[serde(default)]
+    pub exposure_ev: f64,
+    /// Tone curve of PNG. Default `pbr_neutral`.
+    #[serde(default)]
+    pub tone_curve: ToneCurve,
+}
+
+fn default_map_format() -> ImageFormat {
+    ImageFormat::Exr
+}
+
+/// A surface that receives light: `"floor"` or an index into `objects`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(untagged)]
+pub enum Receiver {
+    /// The floor rectangle.
+    Floor(FloorWord),
+    /// An index into `objects`.
+    Object(u32),
+}
+
+/// How linear layers become a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Encoding {
+    /// File format.
+    pub format: ImageFormat,
+    /// Bits per PNG channel, 8 or 16.
+    pub png_bits: u32,
+    /// Stops on top of the scene's own exposure (PNG).
+    pub exposure_ev: f64,
+    /// Tone curve (PNG).
+    pub tone_curve: ToneCurve,
+    /// Number type of colour channels (EXR).
+    pub exr_pixel: ExrPixel,
+}
+
+/// File format of a result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ImageFormat {
+    /// sRGB, exposed and tone-mapped.
+    #[default]
+    Png,
+    /// Scene-linear, unexposed, ZIP.
+    Exr,
+}
+
+/// Display curve of PNG, applied to exposed linear light before the sRGB encoding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ToneCurve {
+    /// Clip at 1; how many pixels were clipped is a warning.
+    Clip,
+    /// Khronos PBR Neutral: identity up to 0.76, then a shoulder that bleaches highlights.
+    #[default]
+    PbrNeutral,
+}
+
+/// Number type of EXR colour channels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ExrPixel {
+    /// 16-bit float.
+    #[default]
+    Half,
+    /// 32-bit float.
+    Float,
+}
+
+/// A layer of a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LayerName {
+    /// Radiance at the camera, W/(m² sr), and alpha; EXR root R G B A.
+    Radiance,
+    /// Distance along the viewing axis to the water or the first surface, m; EXR root Z; +∞ becomes 10¹⁰ m.
+    Depth,
+    /// World normal of the surface seen through the water; EXR N.X N.Y N.Z.
+    Normal,
+    /// World position of the surface seen through the water, m; EXR P.X P.Y P.Z.
+    Position,
+    /// Diffuse reflectance of the surface seen; EXR albedo.R albedo.G albedo.B.
+    Albedo,
+    /// Irradiance on the surface seen, W/m²; EXR irradiance.R irradiance.G irradiance.B.
+    Irradiance,
+}
+
+/// Declares the one-word type of a `kind` field.
+macro_rules! kinds {
+    ($($name:ident = $word:literal),+ $(,)?) => {$(
+        #[doc = concat!("The word `", $word, "`.")]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+        pub enum $name {
+            #[doc = concat!("`", $word, "`")]
+            #[default]
+            #[serde(rename = $word)]
+            Word,
+        }
+    )+};
+}
+
+kinds! {
+    FloorWord = "floor",
+    SineKind = "sine",
+    SunKind = "sun",
+    SkyKind = "sky",
+    PerspectiveKind = "perspective",
+    OrthographicKind = "orthographic",
+    ViewKind = "view",
+    IrradianceMapKind = "irradiance_map",
+}

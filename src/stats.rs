@@ -1,0 +1,170 @@
+//! What a frame cost and how trustworthy it is: the `stats` of every answer.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// Everything measured about one frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Stats {
+    /// Program version.
+    pub version: String,
+    /// `blake3:…` of the canonical scene.
+    pub scene_hash: String,
+    /// Where it ran.
+    pub adapter: AdapterStats,
+    /// Passes that ran, in order.
+    pub passes: Vec<PassStats>,
+    /// Passes that did not run, and why.
+    pub absent: Vec<AbsentPass>,
+    /// Wall times, ms.
+    pub time_ms: TimeStats,
+    /// Memory, bytes.
+    pub memory: MemoryStats,
+    /// One account per sun that shines into the water.
+    pub energy: Vec<EnergyAccount>,
+    /// How radiance becomes display values.
+    pub exposure: ExposureStats,
+    /// Whatever was clamped, skipped, sub-sampled or not simulated.
+    pub warnings: Vec<Warning>,
+}
+
+/// The adapter a frame ran on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AdapterStats {
+    /// Adapter name.
+    pub name: String,
+    /// `vulkan`, `metal`, `dx12`.
+    pub backend: String,
+    /// Driver name and version.
+    pub driver: String,
+    /// Whether a CPU does the work.
+    pub software: bool,
+}
+
+/// A pass that ran.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PassStats {
+    /// Pass name.
+    pub name: String,
+    /// Why it is in.
+    pub reason: String,
+    /// How often it ran (per light, per level map, per band of the picture).
+    pub runs: u32,
+    /// GPU time of all runs, ms; absent when the adapter has no usable timestamps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gpu_ms: Option<f64>,
+}
+
+/// A pass that was not needed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AbsentPass {
+    /// Pass name.
+    pub name: String,
+    /// Why it is out.
+    pub reason: String,
+}
+
+/// Wall times, ms.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TimeStats {
+    /// Waiting for the GPU thread.
+    pub queue: f64,
+    /// Facts and plan.
+    pub plan: f64,
+    /// Uploads and recording.
+    pub upload: f64,
+    /// From submission until the GPU was done.
+    pub gpu: f64,
+    /// Copying results to the host.
+    pub readback: f64,
+    /// PNG or EXR encoding.
+    pub encode: f64,
+    /// From arrival to the encoded file.
+    pub total: f64,
+}
+
+/// Memory, bytes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MemoryStats {
+    /// What the plan said the frame would hold at its peak.
+    pub planned_peak_bytes: u64,
+    /// What it did hold, by the program's own accounting of GPU allocations.
+    pub peak_bytes: u64,
+    /// The limit a plan is checked against.
+    pub budget_bytes: u64,
+    /// Level-map cache.
+    pub level_maps: CacheStats,
+}
+
+/// A cache, for this frame (hits, misses, evictions) and as it stands after it (entries, bytes).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CacheStats {
+    /// Found.
+    pub hits: u64,
+    /// Built.
+    pub misses: u64,
+    /// Thrown out to make room.
+    pub evictions: u64,
+    /// Held now.
+    pub entries: u64,
+    /// Held now, bytes.
+    pub bytes: u64,
+    /// At most, bytes.
+    pub budget_bytes: u64,
+}
+
+/// Where one light's power went, W per channel; each term is summed where it happens, none by subtraction.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct EnergyAccount {
+    /// Index into `lights`.
+    pub light: u32,
+    /// Falls on the simulated piece of water.
+    pub emitted_w: [f64; 3],
+    /// Arrives on receiver maps.
+    pub landed_w: [f64; 3],
+    /// Absorbed on the way to a receiver.
+    pub absorbed_w: [f64; 3],
+    /// Scattered out of the beams on the way to a receiver.
+    pub scattered_w: [f64; 3],
+    /// Reflected at the surface.
+    pub reflected_w: [f64; 3],
+    /// Passes the edges of the maps.
+    pub left_region_w: [f64; 3],
+    /// Meets no receiver at all (nothing below, or refracted away from everything).
+    pub missed_w: [f64; 3],
+    /// |emitted − all the rest| / emitted, the largest of the channels; 0 when nothing is emitted.
+    pub closure: f64,
+}
+
+/// How radiance becomes display values: display = tone_curve(radiance · scale).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ExposureStats {
+    /// Radiance of a perfect white, horizontal, dry surface under the scene's lights, W/(m² sr); it is shown as 1 at 0 EV.
+    pub white_radiance: f64,
+    /// Requested stops.
+    pub ev: f64,
+    /// Factor applied (PNG only).
+    pub scale: f64,
+}
+
+/// Something the reader of the picture should know.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Warning {
+    /// Stable word for programs.
+    pub code: String,
+    /// Sentence for people.
+    pub message: String,
+    /// JSON pointer to the cause, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pointer: Option<String>,
+    /// Flux concerned, W per channel, where it was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flux_w: Option<[f64; 3]>,
+}
+
+impl Warning {
+    /// A warning without pointer and flux.
+    pub fn new(code: &str, message: impl Into<String>) -> Self {
+        Self { code: code.to_owned(), message: message.into(), ..Self::default() }
+    }
+}
