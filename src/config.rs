@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// Which adapters may be used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize, ToSchema)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize, ToSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum AdapterPolicy {
     /// A GPU, or refuse to start.
@@ -24,10 +26,20 @@ pub struct RenderConfig {
     #[arg(long, env = "CAUSTICA_ADAPTER", value_enum, default_value_t = AdapterPolicy::Any, global = true)]
     pub adapter: AdapterPolicy,
     /// GPU memory one frame may hold, MiB; a plan above it is refused before anything is allocated.
-    #[arg(long, env = "CAUSTICA_MEMORY_BUDGET_MIB", default_value_t = 2048, global = true)]
+    #[arg(
+        long,
+        env = "CAUSTICA_MEMORY_BUDGET_MIB",
+        default_value_t = 2048,
+        global = true
+    )]
     pub memory_budget_mib: u64,
     /// GPU memory for cached level maps, MiB.
-    #[arg(long, env = "CAUSTICA_LEVEL_MAP_BUDGET_MIB", default_value_t = 64, global = true)]
+    #[arg(
+        long,
+        env = "CAUSTICA_LEVEL_MAP_BUDGET_MIB",
+        default_value_t = 64,
+        global = true
+    )]
     pub level_map_budget_mib: u64,
     /// Folder to write every assembled shader to.
     #[arg(long, env = "CAUSTICA_SHADER_DUMP", global = true)]
@@ -36,7 +48,12 @@ pub struct RenderConfig {
 
 impl Default for RenderConfig {
     fn default() -> Self {
-        Self { adapter: AdapterPolicy::Any, memory_budget_mib: 2048, level_map_budget_mib: 64, shader_dump: None }
+        Self {
+            adapter: AdapterPolicy::Any,
+            memory_budget_mib: 2048,
+            level_map_budget_mib: 64,
+            shader_dump: None,
+        }
     }
 }
 
@@ -44,16 +61,36 @@ impl Default for RenderConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Args, Serialize, Deserialize, ToSchema)]
 pub struct Limits {
     /// Largest request body, bytes.
-    #[arg(long, env = "CAUSTICA_MAX_BODY_BYTES", default_value_t = 67_108_864, global = true)]
+    #[arg(
+        long,
+        env = "CAUSTICA_MAX_BODY_BYTES",
+        default_value_t = 67_108_864,
+        global = true
+    )]
     pub max_body_bytes: usize,
     /// Largest picture, pixels.
-    #[arg(long, env = "CAUSTICA_MAX_PIXELS", default_value_t = 33_554_432, global = true)]
+    #[arg(
+        long,
+        env = "CAUSTICA_MAX_PIXELS",
+        default_value_t = 33_554_432,
+        global = true
+    )]
     pub max_pixels: u64,
     /// Most triangles of one mesh.
-    #[arg(long, env = "CAUSTICA_MAX_TRIANGLES", default_value_t = 1_000_000, global = true)]
+    #[arg(
+        long,
+        env = "CAUSTICA_MAX_TRIANGLES",
+        default_value_t = 1_000_000,
+        global = true
+    )]
     pub max_triangles: usize,
     /// Most objects in a scene.
-    #[arg(long, env = "CAUSTICA_MAX_OBJECTS", default_value_t = 256, global = true)]
+    #[arg(
+        long,
+        env = "CAUSTICA_MAX_OBJECTS",
+        default_value_t = 256,
+        global = true
+    )]
     pub max_objects: usize,
     /// Most lights in a scene.
     #[arg(long, env = "CAUSTICA_MAX_LIGHTS", default_value_t = 16, global = true)]
@@ -62,7 +99,12 @@ pub struct Limits {
     #[arg(long, env = "CAUSTICA_MAX_WAVES", default_value_t = 256, global = true)]
     pub max_waves: usize,
     /// Host memory for uploaded meshes, bytes; beyond it an upload is refused.
-    #[arg(long, env = "CAUSTICA_MESH_STORE_BYTES", default_value_t = 1_073_741_824, global = true)]
+    #[arg(
+        long,
+        env = "CAUSTICA_MESH_STORE_BYTES",
+        default_value_t = 1_073_741_824,
+        global = true
+    )]
     pub mesh_store_bytes: u64,
 }
 

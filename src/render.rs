@@ -16,7 +16,9 @@ pub enum RenderError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// The plan needs more memory than allowed.
-    #[error("the scene needs {needed_bytes} bytes of GPU memory at its peak, {budget_bytes} are allowed")]
+    #[error(
+        "the scene needs {needed_bytes} bytes of GPU memory at its peak, {budget_bytes} are allowed"
+    )]
     OverBudget {
         /// Planned peak.
         needed_bytes: u64,
@@ -32,7 +34,9 @@ pub enum RenderError {
 }
 
 /// Result of comparing this machine's GPU with float64 physics.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+#[derive(
+    Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema,
+)]
 pub struct SelfCheck {
     /// Whether every check passed.
     pub passed: bool,
@@ -41,7 +45,9 @@ pub struct SelfCheck {
 }
 
 /// One check.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+#[derive(
+    Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema,
+)]
 pub struct SelfCheckItem {
     /// What was compared.
     pub name: String,
@@ -76,7 +82,11 @@ impl Renderer {
     }
 
     /// Renders; `cancel` is looked at between submissions.
-    pub fn render(&mut self, resolved: &ResolvedScene, cancel: &CancellationToken) -> Result<Frame, RenderError> {
+    pub fn render(
+        &mut self,
+        resolved: &ResolvedScene,
+        cancel: &CancellationToken,
+    ) -> Result<Frame, RenderError> {
         let _ = (resolved, cancel);
         Err(RenderError::Cancelled)
     }

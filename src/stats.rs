@@ -165,6 +165,10 @@ pub struct Warning {
 impl Warning {
     /// A warning without pointer and flux.
     pub fn new(code: &str, message: impl Into<String>) -> Self {
-        Self { code: code.to_owned(), message: message.into(), ..Self::default() }
+        Self {
+            code: code.to_owned(),
+            message: message.into(),
+            ..Self::default()
+        }
     }
 }

@@ -22,9 +22,19 @@ pub struct Issue {
 }
 
 /// Reads an object by its `kind`.
-pub(super) fn tagged<'de, D: Deserializer<'de>, T>(deserializer: D, default_kind: Option<&str>, kinds: &[&str], read: impl FnOnce(&str, Value) -> Result<T, String>) -> Result<T, D::Error> {
+pub(super) fn tagged<'de, D: Deserializer<'de>, T>(
+    deserializer: D,
+    default_kind: Option<&str>,
+    kinds: &[&str],
+    read: impl FnOnce(&str, Value) -> Result<T, String>,
+) -> Result<T, D::Error> {
     let value = Value::deserialize(deserializer)?;
-    let kind = value.get("kind").and_then(Value::as_str).or(default_kind).unwrap_or_default().to_owned();
+    let kind = value
+        .get("kind")
+        .and_then(Value::as_str)
+        .or(default_kind)
+        .unwrap_or_default()
+        .to_owned();
     if !kinds.contains(&kind.as_str()) {
         return Err(serde::de::Error::custom(format!("kind {kind}")));
     }
@@ -42,6 +52,8 @@ pub(super) fn integral_u32<'de, D: Deserializer<'de>>(deserializer: D) -> Result
 }
 
 /// The same, optional.
-pub(super) fn optional_integral_u32<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+pub(super) fn optional_integral_u32<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<u32>, D::Error> {
     Ok(Option::<f64>::deserialize(deserializer)?.map(|v| v as u32))
 }

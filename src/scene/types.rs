@@ -90,7 +90,9 @@ pub enum Wave {
 
 impl<'de> Deserialize<'de> for Wave {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        tagged(deserializer, None, &["sine"], |_, value| inner(value).map(Self::Sine))
+        tagged(deserializer, None, &["sine"], |_, value| {
+            inner(value).map(Self::Sine)
+        })
     }
 }
 
@@ -147,10 +149,15 @@ pub enum Light {
 
 impl<'de> Deserialize<'de> for Light {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        tagged(deserializer, None, &["sun", "sky"], |kind, value| match kind {
-            "sun" => inner(value).map(Self::Sun),
-            _ => inner(value).map(Self::Sky),
-        })
+        tagged(
+            deserializer,
+            None,
+            &["sun", "sky"],
+            |kind, value| match kind {
+                "sun" => inner(value).map(Self::Sun),
+                _ => inner(value).map(Self::Sky),
+            },
+        )
     }
 }
 
@@ -241,10 +248,15 @@ pub enum Camera {
 
 impl<'de> Deserialize<'de> for Camera {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        tagged(deserializer, Some("perspective"), &["perspective", "orthographic"], |kind, value| match kind {
-            "orthographic" => inner(value).map(Self::Orthographic),
-            _ => inner(value).map(Self::Perspective),
-        })
+        tagged(
+            deserializer,
+            Some("perspective"),
+            &["perspective", "orthographic"],
+            |kind, value| match kind {
+                "orthographic" => inner(value).map(Self::Orthographic),
+                _ => inner(value).map(Self::Perspective),
+            },
+        )
     }
 }
 
@@ -377,10 +389,15 @@ impl Default for Output {
 
 impl<'de> Deserialize<'de> for Output {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        tagged(deserializer, None, &["view", "irradiance_map"], |kind, value| match kind {
-            "irradiance_map" => inner(value).map(Self::IrradianceMap),
-            _ => inner(value).map(Self::View),
-        })
+        tagged(
+            deserializer,
+            None,
+            &["view", "irradiance_map"],
+            |kind, value| match kind {
+                "irradiance_map" => inner(value).map(Self::IrradianceMap),
+                _ => inner(value).map(Self::View),
+            },
+        )
     }
 }
 
@@ -491,15 +508,27 @@ pub struct IrradianceMapOutput {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_m: Option<[f64; 2]>,
     /// Texels along x, 1 … 8192. Floor only; default 512.
-    #[serde(default, deserialize_with = "optional_integral_u32", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "optional_integral_u32",
+        skip_serializing_if = "Option::is_none"
+    )]
     #[schema(minimum = 1, maximum = 8192)]
     pub width: Option<u32>,
     /// Texels along z, 1 … 8192. Floor only; default 512.
-    #[serde(default, deserialize_with = "optional_integral_u32", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "optional_integral_u32",
+        skip_serializing_if = "Option::is_none"
+    )]
     #[schema(minimum = 1, maximum = 8192)]
     pub height: Option<u32>,
     /// Index into `lights` of the only sun to count; needed on a mesh when there are several suns. Default: all.
-    #[serde(default, deserialize_with = "optional_integral_u32", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "optional_integral_u32",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub light: Option<u32>,
     /// Whether skies count too. Default false.
     #[serde(default)]

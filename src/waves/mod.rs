@@ -56,7 +56,10 @@ impl WaterSurface {
                 SineComponent {
                     amplitude_m: wave.amplitude_m,
                     frequency_per_m: DVec2::new(cos_d, sin_d) / wave.wavelength_m,
-                    phase_turns: reduce_turns(reduce_turns(wave.phase_deg / 360.0) - reduce_turns(turns_per_s * scene.time_s)),
+                    phase_turns: reduce_turns(
+                        reduce_turns(wave.phase_deg / 360.0)
+                            - reduce_turns(turns_per_s * scene.time_s),
+                    ),
                 }
             })
             .collect();
@@ -68,7 +71,9 @@ impl WaterSurface {
         let mut height_m = 0.0;
         let mut slope = DVec2::ZERO;
         for c in &self.components {
-            let (sin, cos) = sin_cos_turns(x_m * c.frequency_per_m.x + z_m * c.frequency_per_m.y + c.phase_turns);
+            let (sin, cos) = sin_cos_turns(
+                x_m * c.frequency_per_m.x + z_m * c.frequency_per_m.y + c.phase_turns,
+            );
             height_m += c.amplitude_m * sin;
             slope += c.frequency_per_m * (std::f64::consts::TAU * c.amplitude_m * cos);
         }
@@ -82,7 +87,9 @@ impl WaterSurface {
             .iter()
             .map(|c| SineComponent {
                 phase_turns: reduce_turns(
-                    c.phase_turns + reduce_turns(origin_m.x * c.frequency_per_m.x) + reduce_turns(origin_m.y * c.frequency_per_m.y),
+                    c.phase_turns
+                        + reduce_turns(origin_m.x * c.frequency_per_m.x)
+                        + reduce_turns(origin_m.y * c.frequency_per_m.y),
                 ),
                 ..*c
             })
@@ -97,12 +104,18 @@ impl WaterSurface {
 
     /// Largest slope that the components can add up to along the horizontal unit vector `u`.
     pub fn max_slope_along(&self, u: DVec2) -> f64 {
-        self.components.iter().map(|c| std::f64::consts::TAU * c.amplitude_m * c.frequency_per_m.dot(u).abs()).sum()
+        self.components
+            .iter()
+            .map(|c| std::f64::consts::TAU * c.amplitude_m * c.frequency_per_m.dot(u).abs())
+            .sum()
     }
 
     /// Largest steepness in any direction (an upper bound).
     pub fn max_slope(&self) -> f64 {
-        self.components.iter().map(|c| std::f64::consts::TAU * c.amplitude_m * c.frequency_per_m.length()).sum()
+        self.components
+            .iter()
+            .map(|c| std::f64::consts::TAU * c.amplitude_m * c.frequency_per_m.length())
+            .sum()
     }
 
     /// Slopes on the rim of all that the components can add up to, seen along `directions` evenly spaced directions: where the
@@ -113,7 +126,8 @@ impl WaterSurface {
         }
         (0..directions)
             .map(|i| {
-                let u = DVec2::from_angle(std::f64::consts::TAU * f64::from(i) / f64::from(directions));
+                let u =
+                    DVec2::from_angle(std::f64::consts::TAU * f64::from(i) / f64::from(directions));
                 self.components
                     .iter()
                     .map(|c| {
