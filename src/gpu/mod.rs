@@ -1,4 +1,15 @@
-//! GPU.
+//! The GPU: one context, assembled and reflected shaders, pooled buffers, timing, readback. Knows nothing of water.
+
+pub mod context;
+pub mod kernel;
+pub mod pool;
+pub mod readback;
+pub mod shader;
+pub mod timing;
+
+pub use context::GpuContext;
+pub use kernel::{Binding, Kernel, RasterKernel};
+pub use pool::BufferPool;
 
 /// What can go wrong on the GPU.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -15,6 +26,14 @@ pub enum GpuError {
     /// The driver or wgpu refused a call: a defect of ours.
     #[error("GPU validation error: {0}")]
     Validation(String),
+    /// A shader does not assemble or does not match its pass: a defect of ours.
+    #[error("shader `{shader}`: {message}")]
+    Shader {
+        /// File name below `shaders/`.
+        shader: String,
+        /// What is wrong with it.
+        message: String,
+    },
     /// The GPU did not answer in time.
     #[error("the GPU did not answer within {0} s")]
     Timeout(u64),

@@ -1,21 +1,23 @@
 //! How much of a texel a footprint covers, in closed form.
+//!
+//! The area of a triangle inside the texel [x₀, x₁] × row is the sum over its edges of ∫ (max(x − x₀, 0) − max(x − x₁, 0)) dy:
+//! no polygon is clipped, and every quotient stays in 0 … 1.
 
-/// Mean of clamp(x, 0, w) for x running evenly from `x_a` to `x_b`, `w` ≥ 0; one edge's share of a texel's coverage.
-///
-/// With c = clamp(x, 0, w) and m = max(x, w): ((c_b − c_a)(c_a + c_b)/2 + w (m_b − m_a)) / (x_b − x_a); every quotient stays
-/// in 0 … 1, so nothing blows up for a vertical edge. (Ours.)
-pub fn mean_clamped(x_a: f64, x_b: f64, w: f64) -> f64 {
-    let c_a = x_a.clamp(0.0, w);
-    let c_b = x_b.clamp(0.0, w);
+/// Mean of max(x, 0) for x running evenly from `x_a` to `x_b`: (m_b − m_a)/(x_b − x_a) · (m_a + m_b)/2 with m = max(x, 0). (Ours.)
+pub fn mean_positive(x_a: f64, x_b: f64) -> f64 {
+    let m_a = x_a.max(0.0);
+    let m_b = x_b.max(0.0);
     let d = x_b - x_a;
-    if d == 0.0 {
-        return c_a;
-    }
-    (c_b - c_a) / d * 0.5 * (c_a + c_b) + w * ((x_b.max(w) - x_a.max(w)) / d)
+    let share = if d == 0.0 {
+        if x_a > 0.0 { 1.0 } else { 0.0 }
+    } else {
+        (m_b - m_a) / d
+    };
+    0.5 * (m_a + m_b) * share
 }
 
-/// Share of a tent density on `t_0` ≤ `t_peak` ≤ `t_1` that lies below `t`; the density a triangle's flux has along its
-/// longest side when its area vanishes. 0 at t_0, (t_peak − t_0)/(t_1 − t_0) at the peak, 1 at t_1. (Ours.)
+/// Share of a tent density on `t_0` ≤ `t_peak` ≤ `t_1` that lies below `t`: the density of a triangle's flux along its longest
+/// side when its area vanishes. 0 at t_0, (t_peak − t_0)/(t_1 − t_0) at the peak, 1 at t_1. (Ours.)
 pub fn tent_share_below(t: f64, t_0: f64, t_peak: f64, t_1: f64) -> f64 {
     let length = t_1 - t_0;
     if t <= t_0 {

@@ -12,4 +12,5 @@ pub mod dispersion;
 pub mod fresnel;
 pub mod refraction;
 pub mod registry;
+pub mod sky;
 pub mod turns;

@@ -6,8 +6,10 @@
 
 pub mod facts;
 pub mod parse;
+pub mod placement;
 pub mod types;
 pub mod validate;
+pub mod window;
 
 pub use parse::SceneError;
 pub use types::*;

@@ -1,0 +1,108 @@
+// Camera irradiance — how much light falls on what each pixel sees? One invocation per pixel: the receiver's maps under water,
+// the suns themselves above it, and the sky on both.
+#import "lib/sky.wgsl"
+#import "shared/view.wgsl"
+#import "shared/geometry.wgsl"
+#import "shared/receivers.wgsl"
+#import "shared/level_maps.wgsl"
+
+struct SunLight {
+    to_light: vec4f,
+    irradiance_w_m2: vec4f,
+}
+
+// Receivers of all suns, sun by sun.
+@group(0) @binding(3) var<storage, read> all_receivers: array<Receiver>;
+@group(0) @binding(12) var<storage, read> irradiance: array<f32>;
+@group(0) @binding(16) var<storage, read> visible_position: array<vec4f>;
+@group(0) @binding(17) var<storage, read> visible_normal: array<vec4f>;
+@group(0) @binding(20) var<storage, read_write> visible_irradiance: array<vec4f>; // W/m², w: 1 where the floor's map has no texel
+@group(0) @binding(21) var<uniform> suns: array<SunLight, 16>;
+
+fn texel_value(offset: u32, width: u32, texel: vec2u) -> vec3f {
+    let at = 3u * (offset + texel.y * width + texel.x);
+    return vec3f(irradiance[at], irradiance[at + 1u], irradiance[at + 2u]);
+}
+
+// The floor's map between texel centres.
+fn floor_irradiance(r: Receiver, uv: vec2f) -> vec3f {
+    let size = vec2f(f32(r.map_width), f32(r.map_height));
+    let q = clamp(uv - 0.5, vec2f(0.0), size - 1.0);
+    let low = vec2u(floor(q));
+    let high = min(low + 1u, vec2u(r.map_width - 1u, r.map_height - 1u));
+    let f = q - floor(q);
+    let near = mix(texel_value(r.irradiance_offset, r.map_width, low), texel_value(r.irradiance_offset, r.map_width, vec2u(high.x, low.y)), f.x);
+    let far = mix(texel_value(r.irradiance_offset, r.map_width, vec2u(low.x, high.y)), texel_value(r.irradiance_offset, r.map_width, high), f.x);
+    return mix(near, far, f.y);
+}
+
+// An object's map: texels whose front lies at the point's own depth count, so what is hidden from the light stays dark and
+// silhouettes take nothing from beside them.
+fn object_irradiance(r: Receiver, p: vec3f, normal: vec3f) -> vec3f {
+    let cosine = -dot(normal, r.axis.xyz);
+    if cosine <= 0.0 { return vec3f(0.0); }
+    let m = to_map(r, p);
+    let base = floor(m.xy - 0.5);
+    let f = m.xy - 0.5 - base;
+    let bias = r.s_per_m * inverseSqrt(r.density_per_flux) * (1.0 + 2.0 * min(sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine, 8.0));
+    var sum = vec3f(0.0);
+    var weights = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let corner = vec2i(i & 1, i >> 1);
+        let texel = vec2i(base) + corner;
+        let front = level_map_depths(r.level_map_offset, r.map_width, 0u, texel).x;
+        if abs(front - m.z) > bias { continue; }
+        let weight = max(select(1.0 - f.x, f.x, corner.x == 1) * select(1.0 - f.y, f.y, corner.y == 1), 1e-4);
+        sum += weight * texel_value(r.irradiance_offset, r.map_width, vec2u(texel));
+        weights += weight;
+    }
+    if weights == 0.0 { return vec3f(0.0); }
+    return sum * (cosine / weights);
+}
+
+fn sun_in_air(p: vec3f, normal: vec3f) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < view.air_sun_count; i++) {
+        let l = suns[i].to_light.xyz;
+        let cosine = dot(normal, l);
+        if cosine <= 0.0 { continue; }
+        let blocker = trace_objects(view.instance_count, p + normal * 1e-3, l, 0.0, VERY_FAR_M);
+        if blocker.receiver < 0 { sum += suns[i].irradiance_w_m2.xyz * cosine; }
+    }
+    return sum;
+}
+
+@compute @workgroup_size(8, 8)
+fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
+    let index = band_pixel(id);
+    if index >= view.width * view.row_count { return; }
+    let seen = visible_position[index];
+    let receiver = i32(seen.w);
+    var sum = vec3f(0.0);
+    var outside = 0.0;
+    if receiver >= 0 {
+        let p = seen.xyz;
+        let normal = visible_normal[index].xyz;
+        // The water at rest is y = 0; what rises above it by less than the waves is under water or not by a hair: light from the maps.
+        if p.y > view.max_height_m {
+            sum += sun_in_air(p, normal);
+            for (var c = 0; c < 3; c++) { sum[c] += sky_irradiance(view.sky_radiance[c], 1.0, 0.0, 0.0, 1.0, normal.y); }
+        } else {
+            for (var s = 0u; s < view.sun_count; s++) {
+                let r = all_receivers[s * view.receiver_count + u32(receiver)];
+                if receiver == FLOOR {
+                    if s > 0u { break; }
+                    let uv = to_map(r, p).xy;
+                    if any(uv < vec2f(0.0)) || any(uv > vec2f(f32(r.map_width), f32(r.map_height))) { outside = 1.0; }
+                    sum += floor_irradiance(r, uv);
+                } else {
+                    sum += object_irradiance(r, p, normal);
+                }
+            }
+            for (var c = 0; c < 3; c++) {
+                sum[c] += sky_irradiance(view.sky_radiance[c], view.sky_transmittance, view.extinction_per_m[c], -p.y, view.sky_path_factor, normal.y);
+            }
+        }
+    }
+    visible_irradiance[index] = vec4f(sum, outside);
+}

@@ -1,0 +1,23 @@
+// Hits — what does each ray strike first? One invocation per grid vertex.
+#import "lib/attenuation.wgsl"
+#import "shared/light.wgsl"
+#import "shared/receivers.wgsl"
+#import "shared/floor_distance.wgsl"
+#import "shared/level_maps.wgsl"
+#import "shared/trace_light.wgsl"
+
+@group(0) @binding(8) var<storage, read> surface: array<vec4f>;
+@group(0) @binding(9) var<storage, read> beams: array<vec4f>;
+// Per vertex: (u, v) on the receiver's map in texels, path length (m), receiver index (−1: none).
+@group(0) @binding(10) var<storage, read_write> hits: array<vec4f>;
+
+@compute @workgroup_size(64)
+fn hits_main(@builtin(global_invocation_id) id: vec3u) {
+    let side = light.cells + 1u;
+    if id.x >= side || id.y >= side { return; }
+    let vertex = id.y * side + id.x;
+    let xz = vertex_m(vec2f(id.xy));
+    let origin = vec3f(xz.x, surface[vertex].x, xz.y);
+    let hit = trace_light(origin, beams[vertex].xyz, light.receiver_count, light.has_floor == 1u);
+    hits[vertex] = vec4f(hit.uv, hit.t, f32(hit.receiver));
+}

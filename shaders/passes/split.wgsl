@@ -1,0 +1,84 @@
+// Split — beams whose corners end on different receivers are halved `split_levels` times along each side, with rays of their
+// own. One workgroup per straddling beam of the grid.
+#import "lib/turns.wgsl"
+#import "lib/refraction.wgsl"
+#import "lib/fresnel.wgsl"
+#import "lib/attenuation.wgsl"
+#import "lib/coverage.wgsl"
+#import "shared/light.wgsl"
+#import "shared/water_surface.wgsl"
+#import "shared/receivers.wgsl"
+#import "shared/floor_distance.wgsl"
+#import "shared/level_maps.wgsl"
+#import "shared/trace_light.wgsl"
+#import "shared/flux.wgsl"
+#import "shared/footprint.wgsl"
+#import "shared/beam_triangle.wgsl"
+#import "shared/account.wgsl"
+
+@group(0) @binding(6) var<storage, read> split_queue: array<u32>;
+@group(0) @binding(11) var<storage, read_write> torn: array<atomic<u32>>; // beams still torn after the last halving
+
+const QUEUE_HEAD: u32 = 3u;
+
+// Corner `k` of the beam, in cells; the same triangles as in shared/grid_beam.wgsl.
+fn beam_corner(cell: vec2u, half: u32, k: u32) -> vec2f {
+    let even_corners = array<vec3u, 2>(vec3u(0u, 1u, 3u), vec3u(0u, 3u, 2u));
+    let odd_corners = array<vec3u, 2>(vec3u(0u, 1u, 2u), vec3u(1u, 3u, 2u));
+    var triple = even_corners[half];
+    if ((cell.x + cell.y) & 1u) == 1u { triple = odd_corners[half]; }
+    return vec2f(cell + vec2u(triple[k] & 1u, triple[k] >> 1u));
+}
+
+fn split_beam(corners: mat3x2f) -> Beam {
+    var b: Beam;
+    var transmittance = 0.0;
+    for (var k = 0; k < 3; k++) {
+        let xz = vertex_m(corners[k]);
+        let water = water_surface_at(xz, light.wave_count);
+        let normal = normal_from_slope(water.y, water.z);
+        b.origin[k] = vec3f(xz.x, water.x, xz.y);
+        b.direction[k] = refract_direction(-light.to_light.xyz, normal, light.ior).xyz;
+        transmittance += fresnel_transmittance(dot(normal, light.to_light.xyz), light.ior);
+        let hit = trace_light(b.origin[k], b.direction[k], light.receiver_count, light.has_floor == 1u);
+        b.uv[k] = hit.uv;
+        b.t[k] = hit.t;
+        b.receiver[k] = hit.receiver;
+    }
+    b.flux_m2 = triangle_flux_m2(b.origin[0], b.origin[1], b.origin[2]);
+    b.transmitted_m2 = b.flux_m2 * (transmittance / 3.0);
+    return b;
+}
+
+@compute @workgroup_size(64)
+fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    let beam_index = split_queue[QUEUE_HEAD + group.x];
+    let cell_index = beam_index >> 1u;
+    let cell = vec2u(cell_index % light.cells, cell_index / light.cells);
+    let half = beam_index & 1u;
+    let c0 = beam_corner(cell, half, 0u);
+    let side = 1u << light.split_levels;
+    let e1 = (beam_corner(cell, half, 1u) - c0) / f32(side);
+    let e2 = (beam_corner(cell, half, 2u) - c0) / f32(side);
+    // Row r of the divided triangle holds 2 (side − r) − 1 small ones; n counts them through: n = r (2 side − r) + k.
+    let count = side * side;
+    for (var n = invocation; n < count; n += 64u) {
+        let row = side - 1u - u32(floor(sqrt(f32(count - 1u - n) + 0.5)));
+        let k = n - row * (2u * side - row);
+        let base = c0 + e1 * f32(k >> 1u) + e2 * f32(row);
+        var corners = mat3x2f(base, base + e1, base + e2);
+        if (k & 1u) == 1u { corners = mat3x2f(base + e1, base + e1 + e2, base + e2); }
+        let b = split_beam(corners);
+        if b.transmitted_m2 == 0.0 { continue; }
+        if !is_whole(b) {
+            atomicAdd(&torn[0], 1u);
+            note_losses(deposit_torn(b));
+        } else if b.receiver.x == NO_RECEIVER {
+            note_term(TERM_MISSED, b.transmitted_m2);
+        } else {
+            note_losses(deposit_whole(b));
+        }
+    }
+    workgroupBarrier();
+    flush_account(invocation);
+}

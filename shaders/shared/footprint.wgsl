@@ -1,0 +1,157 @@
+// Depositing a triangle's flux on a receiver map: flux × covered share of each texel, in closed form.
+
+// Longest side (texels) under which a footprint is a point, and area / side² under which it is a segment: there the share of
+// f32 rounding in the coverage would pass 10⁻³ of the triangle's flux, while moving the flux by less than 10⁻³ texel does not show.
+const POINT_SIDE: f32 = 1e-3;
+const SEGMENT_SHAPE: f32 = 4e-4;
+
+struct Target {
+    offset: u32,
+    width: i32,
+    height: i32,
+    channels: u32,
+    scale: f32, // counts per unit of flux
+}
+
+// Adds `share` of the flux at texel (x, y); what lies beside the map is returned.
+fn deposit_share(target_map: Target, x: i32, y: i32, share: f32, triangle_flux: vec3f) -> f32 {
+    if x < 0 || y < 0 || x >= target_map.width || y >= target_map.height { return share; }
+    let texel = target_map.offset + u32(y * target_map.width + x);
+    let counts = triangle_flux * (share * target_map.scale);
+    add_flux(texel, 0u, target_map.channels, counts.x);
+    if target_map.channels == 3u {
+        add_flux(texel, 1u, 3u, counts.y);
+        add_flux(texel, 2u, 3u, counts.z);
+    }
+    return 0.0;
+}
+
+// The share of a triangle (corners relative to `base`) in the column from `x_0` to `x_1` of a row from `y_0` to `y_1`,
+// as signed area. Edges run corner to corner; see src/physics/coverage.rs.
+struct RowEdges {
+    x_a: vec3f,
+    x_b: vec3f,
+    dy: vec3f,
+}
+
+fn edge_x(p: vec2f, q: vec2f, y: f32) -> f32 {
+    let slope = (q.x - p.x) / (q.y - p.y);
+    let x = select(p.x, p.x + (y - p.y) * slope, q.y != p.y);
+    return clamp(x, min(p.x, q.x), max(p.x, q.x));
+}
+
+fn clip_to_row(a: vec2f, b: vec2f, c: vec2f, y_0: f32, y_1: f32) -> RowEdges {
+    let y_start = clamp(vec3f(a.y, b.y, c.y), vec3f(y_0), vec3f(y_1));
+    let y_end = y_start.yzx;
+    let x_a = vec3f(edge_x(a, b, y_start.x), edge_x(b, c, y_start.y), edge_x(c, a, y_start.z));
+    let x_b = vec3f(edge_x(a, b, y_end.x), edge_x(b, c, y_end.y), edge_x(c, a, y_end.z));
+    return RowEdges(x_a, x_b, y_end - y_start);
+}
+
+// Signed area of the triangle's row to the right of `x`.
+fn area_right_of(edges: RowEdges, x: f32) -> f32 {
+    return edges.dy.x * mean_positive(edges.x_a.x - x, edges.x_b.x - x)
+        + edges.dy.y * mean_positive(edges.x_a.y - x, edges.x_b.y - x)
+        + edges.dy.z * mean_positive(edges.x_a.z - x, edges.x_b.z - x);
+}
+
+// Bounds of texel `i` of `count` along one axis; the border cells −1 and `count` reach to the footprint's end.
+fn cell_bounds(i: i32, count: i32, base: f32, low: f32, high: f32) -> vec2f {
+    return vec2f(
+        select(f32(i) - base, low, i < 0),
+        select(f32(i + 1) - base, high, i >= count));
+}
+
+// Deposits a triangle; returns the share that fell beside the map.
+fn deposit_triangle(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
+    let size = vec2i(target_map.width, target_map.height);
+    let low = min(a, min(b, c));
+    let high = max(a, max(b, c));
+    // Huge coordinates stay in the range of i32: everything past the border is the border cell.
+    let first = vec2i(floor(clamp(low, vec2f(-1.0), vec2f(size))));
+    let last = vec2i(floor(clamp(high, vec2f(-1.0), vec2f(size))));
+    if all(first == last) {
+        return deposit_share(target_map, first.x, first.y, 1.0, triangle_flux);
+    }
+    if any(last < vec2i(0)) || any(first >= size) { return 1.0; }
+    // Corners relative to a texel corner near the footprint keep their last bits.
+    let base = vec2f(first);
+    let p = a - base;
+    let q = b - base;
+    let r = c - base;
+    let side2 = max(dot(q - p, q - p), max(dot(r - q, r - q), dot(p - r, p - r)));
+    let area2 = (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+    if side2 < POINT_SIDE * POINT_SIDE {
+        let middle = vec2i(floor((a + b + c) / 3.0));
+        return deposit_share(target_map, middle.x, middle.y, 1.0, triangle_flux);
+    }
+    if abs(area2) < SEGMENT_SHAPE * side2 {
+        return deposit_segment(target_map, base, p, q, r, triangle_flux);
+    }
+    let per_area = 2.0 / area2;
+    let lo = low - base;
+    let hi = high - base;
+    var beside = 0.0;
+    for (var y = first.y; y <= last.y; y++) {
+        let row = cell_bounds(y, size.y, base.y, lo.y, hi.y);
+        let edges = clip_to_row(p, q, r, row.x, row.y);
+        let x_low = min(min(edges.x_a.x, edges.x_a.y), edges.x_a.z);
+        let x_high = max(max(edges.x_a.x, edges.x_a.y), edges.x_a.z);
+        let x_last = max(max(edges.x_b.x, edges.x_b.y), edges.x_b.z);
+        let x_first = min(min(edges.x_b.x, edges.x_b.y), edges.x_b.z);
+        let column_first = max(i32(floor(min(x_low, x_first) + base.x)), first.x);
+        let column_last = min(i32(floor(max(x_high, x_last) + base.x)), last.x);
+        var right = area_right_of(edges, cell_bounds(column_first, size.x, base.x, lo.x, hi.x).x);
+        for (var x = column_first; x <= column_last; x++) {
+            let next = area_right_of(edges, cell_bounds(x, size.x, base.x, lo.x, hi.x).y);
+            let share = max((right - next) * per_area, 0.0);
+            right = next;
+            beside += deposit_share(target_map, x, y, share, triangle_flux);
+        }
+    }
+    return beside;
+}
+
+// A footprint without area: its flux lies on its longest side, densest under the corner in between.
+fn deposit_segment(target_map: Target, base: vec2f, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
+    // Order the corners along the longest side.
+    let ab = dot(b - a, b - a);
+    let bc = dot(c - b, c - b);
+    let ca = dot(a - c, a - c);
+    var start = a;
+    var end = b;
+    var peak = c;
+    if bc >= ab && bc >= ca { start = b; end = c; peak = a; }
+    else if ca >= ab && ca >= bc { start = c; end = a; peak = b; }
+    let along = end - start;
+    let t_peak = clamp(dot(peak - start, along) / dot(along, along), 0.0, 1.0);
+    let size = vec2i(target_map.width, target_map.height);
+    let at_start = start + base;
+    let at_end = end + base;
+    // Walk from texel to texel; each texel takes the tent's share between the two crossings.
+    let steps = select(vec2f(-1.0), vec2f(1.0), along > vec2f(0.0));
+    let inverse = vec2f(
+        select(1e30, 1.0 / along.x, abs(along.x) > 1e-12),
+        select(1e30, 1.0 / along.y, abs(along.y) > 1e-12));
+    let limit_low = vec2f(-1.0);
+    let limit_high = vec2f(size);
+    var cell = vec2i(floor(clamp(at_start, limit_low, limit_high)));
+    let cell_end = vec2i(floor(clamp(at_end, limit_low, limit_high)));
+    let crossings = abs(cell_end.x - cell.x) + abs(cell_end.y - cell.y);
+    var before = 0.0;
+    var beside = 0.0;
+    for (var i = 0; i <= crossings; i++) {
+        let edge = vec2f(cell) + select(vec2f(0.0), vec2f(1.0), steps > vec2f(0.0)) - base;
+        let t_edge = (edge - start) * inverse;
+        let x_open = cell.x != cell_end.x;
+        let y_open = cell.y != cell_end.y;
+        let by_x = x_open && (!y_open || t_edge.x <= t_edge.y);
+        var t = 1.0;
+        if i < crossings { t = clamp(select(t_edge.y, t_edge.x, by_x), 0.0, 1.0); }
+        let below = max(tent_share_below(t, 0.0, t_peak, 1.0), before);
+        beside += deposit_share(target_map, cell.x, cell.y, below - before, triangle_flux);
+        before = below;
+        if by_x { cell.x += i32(steps.x); } else { cell.y += i32(steps.y); }
+    }
+    return beside;
+}

@@ -1,0 +1,125 @@
+// Meshes as seen by the camera: instances of triangle hierarchies with skip pointers.
+
+struct Instance {
+    mesh_x: vec4f, // rows of mesh_from_local
+    mesh_y: vec4f,
+    mesh_z: vec4f,
+    albedo: vec4f, // w = 1: overrides the mesh's materials
+    min_m: vec4f,  // bounds in local space
+    max_m: vec4f,
+    first_node: u32,     // in vec4 units of `geometry`
+    node_count: u32,
+    first_triangle: u32, // in vec4 units of `geometry`
+    pad: u32,
+}
+
+// Per mesh its nodes (2 vec4 each: corner and link), then its triangles (4 vec4 each: three corners with packed normal, albedo).
+@group(0) @binding(14) var<storage, read> geometry: array<vec4u>;
+@group(0) @binding(15) var<storage, read> instances: array<Instance>;
+
+const LEAF: u32 = 0x80000000u;
+const VERY_FAR_M: f32 = 1e9;
+
+struct Seen {
+    t: f32,
+    receiver: i32, // −1 nothing, 0 floor, k object k − 1
+    normal: vec3f,
+    albedo: vec3f,
+}
+
+// Octahedral unit normal from two 16-bit halves.
+fn unpack_normal(word: u32) -> vec3f {
+    let f = unpack2x16snorm(word);
+    var n = vec3f(f.x, f.y, 1.0 - abs(f.x) - abs(f.y));
+    let fold = max(-n.z, 0.0);
+    n.x += select(fold, -fold, n.x >= 0.0);
+    n.y += select(fold, -fold, n.y >= 0.0);
+    return normalize(n);
+}
+
+fn box_met(low: vec3f, high: vec3f, origin: vec3f, inverse: vec3f, t_max: f32) -> bool {
+    let t0 = (low - origin) * inverse;
+    let t1 = (high - origin) * inverse;
+    let near = min(t0, t1);
+    let far = max(t0, t1);
+    let t_in = max(max(near.x, near.y), max(near.z, 0.0));
+    let t_out = min(min(far.x, far.y), min(far.z, t_max));
+    return t_in <= t_out * 1.0000005;
+}
+
+fn safe_inverse(d: vec3f) -> vec3f {
+    return 1.0 / select(d, vec3f(1e-20), abs(d) < vec3f(1e-20));
+}
+
+// (t, u, v) of a ray and a triangle (Möller & Trumbore 1997), t < 0 where they miss.
+fn triangle_met(a: vec3f, b: vec3f, c: vec3f, origin: vec3f, direction: vec3f) -> vec3f {
+    let e1 = b - a;
+    let e2 = c - a;
+    let p = cross(direction, e2);
+    let determinant = dot(e1, p);
+    if determinant == 0.0 { return vec3f(-1.0); }
+    let s = origin - a;
+    let u = dot(s, p) / determinant;
+    let q = cross(s, e1);
+    let v = dot(direction, q) / determinant;
+    if u < 0.0 || v < 0.0 || u + v > 1.0 { return vec3f(-1.0); }
+    return vec3f(dot(e2, q) / determinant, u, v);
+}
+
+struct MeshHit {
+    t: f32,
+    triangle: u32, // first vec4 of the triangle
+    u: f32,
+    v: f32,
+}
+
+// Nearest hit with one instance between t_min and t_max; t = t_max: none. The direction keeps its local length, so t is in metres.
+fn trace_instance(instance: Instance, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> MeshHit {
+    var best = MeshHit(t_max, 0u, 0.0, 0.0);
+    let o4 = vec4f(origin, 1.0);
+    let o = vec3f(dot(instance.mesh_x, o4), dot(instance.mesh_y, o4), dot(instance.mesh_z, o4));
+    let d = vec3f(dot(instance.mesh_x.xyz, direction), dot(instance.mesh_y.xyz, direction), dot(instance.mesh_z.xyz, direction));
+    let inverse = safe_inverse(d);
+    var node = 0u;
+    while node < instance.node_count {
+        let low = geometry[instance.first_node + 2u * node];
+        let high = geometry[instance.first_node + 2u * node + 1u];
+        if (low.w & LEAF) != 0u {
+            let at = instance.first_triangle + 4u * (low.w & ~LEAF);
+            let a = bitcast<vec3f>(geometry[at].xyz);
+            let b = bitcast<vec3f>(geometry[at + 1u].xyz);
+            let c = bitcast<vec3f>(geometry[at + 2u].xyz);
+            let met = triangle_met(a, b, c, o, d);
+            if met.x > t_min && met.x < best.t { best = MeshHit(met.x, at, met.y, met.z); }
+            node = high.w;
+        } else if box_met(bitcast<vec3f>(low.xyz), bitcast<vec3f>(high.xyz), o, inverse, best.t) {
+            node = low.w;
+        } else {
+            node = high.w;
+        }
+    }
+    return best;
+}
+
+// Nearest object between t_min and t_max.
+fn trace_objects(count: u32, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> Seen {
+    var seen = Seen(t_max, -1, vec3f(0.0), vec3f(0.0));
+    let inverse = safe_inverse(direction);
+    for (var i = 0u; i < count; i++) {
+        let instance = instances[i];
+        if !box_met(instance.min_m.xyz, instance.max_m.xyz, origin, inverse, seen.t) { continue; }
+        let hit = trace_instance(instance, origin, direction, t_min, seen.t);
+        if hit.t >= seen.t { continue; }
+        let w = 1.0 - hit.u - hit.v;
+        let n_mesh = w * unpack_normal(geometry[hit.triangle].w) + hit.u * unpack_normal(geometry[hit.triangle + 1u].w)
+            + hit.v * unpack_normal(geometry[hit.triangle + 2u].w);
+        // Normals go with the transposed inverse of local_from_mesh, which is the transpose of mesh_from_local.
+        let n = n_mesh.x * instance.mesh_x.xyz + n_mesh.y * instance.mesh_y.xyz + n_mesh.z * instance.mesh_z.xyz;
+        let facing = normalize(n);
+        seen.t = hit.t;
+        seen.receiver = i32(i) + 1;
+        seen.normal = select(facing, -facing, dot(facing, direction) > 0.0);
+        seen.albedo = select(bitcast<vec3f>(geometry[hit.triangle + 3u].xyz), instance.albedo.xyz, instance.albedo.w > 0.5);
+    }
+    return seen;
+}

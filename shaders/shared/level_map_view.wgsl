@@ -1,0 +1,17 @@
+// The box a level map is drawn in; rows take mesh coordinates to (u, v) in texels and s in metres.
+
+struct LevelMapView {
+    u_row: vec4f,
+    v_row: vec4f,
+    s_row: vec4f,
+    s_min: f32,
+    s_max: f32,
+    texels: u32,
+    first_triangle: u32, // in vec4 units of `geometry`
+    arena_offset: u32,   // first word of the map in the arena
+    level: u32,          // to be made from the one before (pyramid)
+    source_offset: u32,  // of the level before
+    target_offset: u32,  // of this level
+}
+
+@group(0) @binding(0) var<uniform> level_map_view: LevelMapView;

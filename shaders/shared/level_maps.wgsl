@@ -1,0 +1,103 @@
+// Level maps in their arena: per map the min–max pyramid (front, back) from level 0 on, then one packed normal per texel of level 0.
+
+@group(0) @binding(2) var<storage, read> level_maps: array<u32>;
+
+fn level_offset(size: u32, level: u32) -> u32 {
+    // Levels halve a square power of two: 2 words a texel, size² (1 + ¼ + … ) texels before this level.
+    var offset = 0u;
+    var s = size;
+    for (var l = 0u; l < level; l++) {
+        offset += 2u * s * s;
+        s = s >> 1u;
+    }
+    return offset;
+}
+
+// (front, back) depth s of a texel of a level; front = EMPTY_DEPTH where there is nothing.
+fn level_map_depths(map_offset: u32, size: u32, level: u32, texel: vec2i) -> vec2f {
+    let side = i32(size >> level);
+    if any(texel < vec2i(0)) || any(texel >= vec2i(side)) { return vec2f(EMPTY_DEPTH, -EMPTY_DEPTH); }
+    let word = map_offset + level_offset(size, level) + 2u * u32(texel.y * side + texel.x);
+    return vec2f(bitcast<f32>(level_maps[word]), bitcast<f32>(level_maps[word + 1u]));
+}
+
+// Front depth between texel centres, or the nearest texel's where a neighbour is empty or `gap` away in depth.
+fn smooth_front(r: Receiver, uv: vec2f, gap: f32) -> f32 {
+    let base = floor(uv - 0.5);
+    let f = uv - 0.5 - base;
+    let texel = vec2i(base);
+    let nearest = level_map_depths(r.level_map_offset, r.map_width, 0u, vec2i(floor(uv))).x;
+    var sum = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let corner = vec2i(i & 1, i >> 1);
+        let depth = level_map_depths(r.level_map_offset, r.map_width, 0u, texel + corner).x;
+        if abs(depth - nearest) > gap { return nearest; }
+        sum += depth * select(1.0 - f.x, f.x, corner.x == 1) * select(1.0 - f.y, f.y, corner.y == 1);
+    }
+    return sum;
+}
+
+// Where a ray (map space, t in m) enters what the level map holds, between t_min and t_max; t < 0: nowhere.
+// Hierarchical walk: cells whose depth interval the ray's own interval misses are passed whole.
+fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> f32 {
+    let side = f32(r.map_width);
+    // Clip to the box of the map.
+    var t_in = t_min;
+    var t_out = t_max;
+    let lo = vec3f(0.0, 0.0, r.s_min);
+    let hi = vec3f(side, side, r.s_max);
+    for (var a = 0; a < 3; a++) {
+        let o = origin[a];
+        let d = direction[a];
+        if abs(d) < 1e-20 {
+            if o < lo[a] || o > hi[a] { return -1.0; }
+        } else {
+            let t0 = (lo[a] - o) / d;
+            let t1 = (hi[a] - o) / d;
+            t_in = max(t_in, min(t0, t1));
+            t_out = min(t_out, max(t0, t1));
+        }
+    }
+    if t_in > t_out { return -1.0; }
+    let step_sign = vec2f(select(-1.0, 1.0, direction.x >= 0.0), select(-1.0, 1.0, direction.y >= 0.0));
+    let inverse = vec2f(
+        select(1e30, 1.0 / direction.x, abs(direction.x) > 1e-20),
+        select(1e30, 1.0 / direction.y, abs(direction.y) > 1e-20));
+    var t = t_in;
+    var level = r.level_count - 1u;
+    var cell = vec2i(clamp(floor((origin.xy + t * direction.xy) / f32(1u << level)), vec2f(0.0), vec2f(f32((r.map_width >> level) - 1u))));
+    for (var i = 0u; i < MARCH_STEPS; i++) {
+        // Where the ray leaves the cell.
+        let width = f32(1u << level);
+        let edge = (vec2f(cell) + select(vec2f(0.0), vec2f(1.0), step_sign > vec2f(0.0))) * width;
+        let t_edge = (edge - origin.xy) * inverse;
+        let t_x = select(1e30, t_edge.x, abs(direction.x) > 1e-20);
+        let t_y = select(1e30, t_edge.y, abs(direction.y) > 1e-20);
+        let t_leave = max(min(min(t_x, t_y), t_out), t);
+        let s_0 = origin.z + t * direction.z;
+        let s_1 = origin.z + t_leave * direction.z;
+        let depths = level_map_depths(r.level_map_offset, r.map_width, level, cell);
+        if max(s_0, s_1) >= depths.x && min(s_0, s_1) <= depths.y {
+            if level == 0u {
+                if s_0 >= depths.x || abs(direction.z) < 1e-20 { return t; }
+                return clamp(t + (depths.x - s_0) / direction.z, t, t_leave);
+            }
+            // Descend into the child that holds the entry point.
+            level -= 1u;
+            let child = vec2i(floor((origin.xy + t * direction.xy) / f32(1u << level)));
+            cell = clamp(child, cell * 2, cell * 2 + 1);
+            continue;
+        }
+        if t_leave >= t_out { return -1.0; }
+        // Step over the nearer edge, then try one level up.
+        t = t_leave;
+        if t_x <= t_y { cell.x += i32(step_sign.x); } else { cell.y += i32(step_sign.y); }
+        let count = i32(r.map_width >> level);
+        if any(cell < vec2i(0)) || any(cell >= vec2i(count)) { return -1.0; }
+        if level + 1u < r.level_count {
+            level += 1u;
+            cell = cell >> vec2u(1u);
+        }
+    }
+    return -1.0;
+}

@@ -1,0 +1,41 @@
+// The camera and the medium it looks into; the uniform of all passes that follow a picture.
+
+struct View {
+    eye: vec4f,
+    right: vec4f,         // times half the picture's width at unit distance (orthographic: in metres)
+    up: vec4f,            // times half the picture's height
+    forward: vec4f,       // unit
+    extinction_per_m: vec4f,
+    sky_radiance: vec4f,
+    floor_albedo: vec4f,
+    floor_min_m: vec2f,
+    floor_max_m: vec2f,
+    floor_y_m: f32,
+    has_floor: u32,
+    width: u32,
+    height: u32,
+    first_row: u32,       // of this band
+    row_count: u32,
+    orthographic: u32,
+    wave_count: u32,
+    instance_count: u32,
+    sun_count: u32,       // suns with maps
+    air_sun_count: u32,   // suns above the horizon
+    max_height_m: f32,    // |height| the waves can reach
+    max_slope: f32,
+    ior: f32,
+    sky_transmittance: f32,
+    sky_path_factor: f32,
+    receiver_count: u32,  // per sun, floor included
+    pad_0: u32,
+    pad_1: u32,
+    pad_2: u32,
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+
+// Index of the invocation's pixel within the band, or the pixel count where there is none.
+fn band_pixel(id: vec3u) -> u32 {
+    if id.x >= view.width || id.y >= view.row_count { return view.width * view.row_count; }
+    return id.y * view.width + id.x;
+}

@@ -1,0 +1,178 @@
+//! Opens an adapter by policy and keeps what goes wrong on its device.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use super::GpuError;
+use crate::config::AdapterPolicy;
+use crate::stats::AdapterStats;
+
+/// Longest wait for one submission, s; a submission that takes longer counts as hung.
+pub const WAIT_S: u64 = 300;
+
+/// Errors that wgpu reported outside any call's result; the first is kept, a loss of the device outranks the rest.
+#[derive(Debug, Default)]
+struct ErrorLog {
+    first: Option<GpuError>,
+    lost: Option<String>,
+}
+
+/// One device and its queue.
+#[derive(Debug)]
+pub struct GpuContext {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// What the device may be asked for.
+    pub limits: wgpu::Limits,
+    /// Whether pass timestamps can be taken.
+    pub timestamps: bool,
+    adapter: AdapterStats,
+    errors: Arc<Mutex<ErrorLog>>,
+}
+
+impl GpuContext {
+    /// Opens the best adapter that `policy` admits.
+    pub fn open(policy: AdapterPolicy) -> Result<Self, GpuError> {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = wgpu::Backends::PRIMARY;
+        let instance = wgpu::Instance::new(descriptor);
+        let adapters = block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+        let adapter = choose(adapters, policy)?;
+        let info = adapter.get_info();
+        let timestamps = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let limits = wanted_limits(&adapter.limits());
+        let (device, queue) = block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("caustica"),
+            required_features: if timestamps { wgpu::Features::TIMESTAMP_QUERY } else { wgpu::Features::empty() },
+            required_limits: limits.clone(),
+            memory_hints: wgpu::MemoryHints::MemoryUsage,
+            ..Default::default()
+        }))
+        .map_err(|error| GpuError::NoAdapter(format!("{}: {error}", info.name)))?;
+        let errors = Arc::new(Mutex::new(ErrorLog::default()));
+        listen(&device, &errors);
+        let adapter = AdapterStats {
+            name: info.name,
+            backend: format!("{:?}", info.backend).to_lowercase(),
+            driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+            software: info.device_type == wgpu::DeviceType::Cpu,
+        };
+        tracing::info!(adapter = %adapter.name, driver = %adapter.driver, software = adapter.software, "GPU context open");
+        Ok(Self { device, queue, limits, timestamps, adapter, errors })
+    }
+
+    /// Where this runs.
+    pub fn adapter(&self) -> &AdapterStats {
+        &self.adapter
+    }
+
+    /// The first error since the last call, if any; a lost device stays lost.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let mut log = lock(&self.errors);
+        if let Some(reason) = &log.lost {
+            return Err(GpuError::DeviceLost(reason.clone()));
+        }
+        match log.first.take() {
+            Some(error) => Err(error),
+            None => Ok(()),
+        }
+    }
+
+    /// Blocks until everything submitted is done.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let polled = self
+            .device
+            .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(WAIT_S)) });
+        self.check()?;
+        match polled {
+            Ok(_) => Ok(()),
+            Err(wgpu::PollError::Timeout) => Err(GpuError::Timeout(WAIT_S)),
+            Err(error) => Err(GpuError::Validation(error.to_string())),
+        }
+    }
+
+    /// Lets wgpu free what is no longer used; to be called also when idle.
+    pub fn tidy(&self) {
+        // The result only says whether the queue is empty.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+    }
+}
+
+fn lock(errors: &Mutex<ErrorLog>) -> MutexGuard<'_, ErrorLog> {
+    errors.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn listen(device: &wgpu::Device, errors: &Arc<Mutex<ErrorLog>>) {
+    let log = Arc::clone(errors);
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        let found = match &error {
+            wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory(error.to_string()),
+            _ => GpuError::Validation(error.to_string()),
+        };
+        let mut log = lock(&log);
+        if log.first.is_none() && log.lost.is_none() {
+            tracing::error!(%error, "uncaptured GPU error");
+            log.first = Some(found);
+        }
+    }));
+    let log = Arc::clone(errors);
+    device.set_device_lost_callback(move |reason, message| {
+        let mut log = lock(&log);
+        if log.lost.is_none() {
+            log.lost = Some(format!("{reason:?}: {message}"));
+        }
+    });
+}
+
+/// Baseline limits, raised where size decides what a scene may ask for.
+fn wanted_limits(adapter: &wgpu::Limits) -> wgpu::Limits {
+    wgpu::Limits {
+        max_buffer_size: adapter.max_buffer_size,
+        max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
+        max_texture_dimension_2d: adapter.max_texture_dimension_2d,
+        ..wgpu::Limits::default()
+    }
+}
+
+fn choose(adapters: Vec<wgpu::Adapter>, policy: AdapterPolicy) -> Result<wgpu::Adapter, GpuError> {
+    let software = |a: &wgpu::Adapter| a.get_info().device_type == wgpu::DeviceType::Cpu;
+    let found: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+    let rank = |a: &wgpu::Adapter| match a.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    };
+    let mut fitting: Vec<wgpu::Adapter> = adapters
+        .into_iter()
+        .filter(|a| match policy {
+            AdapterPolicy::Gpu => !software(a),
+            AdapterPolicy::Software => software(a),
+            AdapterPolicy::Any => true,
+        })
+        .collect();
+    fitting.sort_by_key(rank);
+    fitting.into_iter().next().ok_or_else(|| {
+        GpuError::NoAdapter(format!(
+            "policy `{}` admits none of {found:?}; usual causes: no Vulkan driver is installed (Debian: \
+             mesa-vulkan-drivers), a container without NVIDIA_DRIVER_CAPABILITIES=graphics, or a driver library that \
+             misses libXext or libEGL",
+            format!("{policy:?}").to_lowercase()
+        ))
+    })
+}
+
+/// Runs a future that wgpu completes without an executor.
+fn block_on<F: Future>(future: F) -> F::Output {
+    let mut future = std::pin::pin!(future);
+    let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+    loop {
+        if let std::task::Poll::Ready(value) = future.as_mut().poll(&mut context) {
+            return value;
+        }
+        std::thread::yield_now();
+    }
+}

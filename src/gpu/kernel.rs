@@ -1,0 +1,237 @@
+//! Pipelines whose bindings are matched by name: the WGSL variable's name is the only place where a binding is named.
+
+use super::shader::{Access, Module, Reflected, ShaderSources};
+use super::{GpuContext, GpuError};
+
+/// Something to bind.
+#[derive(Clone, Copy, Debug)]
+pub enum Binding<'a> {
+    /// A whole buffer.
+    Buffer(&'a wgpu::Buffer),
+    /// A texture.
+    Texture(&'a wgpu::TextureView),
+}
+
+/// A compute entry point, ready to run.
+#[derive(Debug)]
+pub struct Kernel {
+    name: String,
+    layout: BoundLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Kernel {
+    /// Builds entry point `entry` of shader file `path` with values for `override` constants (those it does not have are skipped).
+    pub fn new(
+        gpu: &GpuContext,
+        sources: &ShaderSources,
+        path: &str,
+        entry: &str,
+        constants: &[(&'static str, f64)],
+    ) -> Result<Self, GpuError> {
+        let module = Module::parse(path, sources.assemble(path)?)?;
+        let layout = BoundLayout::new(gpu, path, module.bindings(path, entry)?, wgpu::ShaderStages::COMPUTE);
+        let shader = shader_module(gpu, path, &module);
+        let constants: Vec<(&str, f64)> =
+            constants.iter().copied().filter(|(name, _)| module.has_override(name)).collect();
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: Some(&layout.pipeline_layout(gpu, entry)),
+            module: &shader,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                ..wgpu::PipelineCompilationOptions::default()
+            },
+            cache: None,
+        });
+        gpu.check()?;
+        Ok(Self { name: entry.to_owned(), layout, pipeline })
+    }
+
+    /// What the kernel binds.
+    pub fn bindings(&self) -> &[Reflected] {
+        &self.layout.bindings
+    }
+
+    /// A bind group from what `find` returns for each variable's name.
+    pub fn bind<'a>(
+        &self,
+        gpu: &GpuContext,
+        find: impl Fn(&str) -> Option<Binding<'a>>,
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        self.layout.bind(gpu, &self.name, find)
+    }
+
+    /// The pipeline.
+    pub fn pipeline(&self) -> &wgpu::ComputePipeline {
+        &self.pipeline
+    }
+}
+
+/// What a raster kernel draws into.
+#[derive(Clone, Copy, Debug)]
+pub struct RasterTargets<'a> {
+    /// Colour formats in the order of the fragment's outputs.
+    pub colors: &'a [wgpu::TextureFormat],
+    /// Depth format.
+    pub depth: wgpu::TextureFormat,
+    /// Which fragment stays.
+    pub depth_compare: wgpu::CompareFunction,
+}
+
+/// A vertex and a fragment entry point that draw triangles without vertex buffers.
+#[derive(Debug)]
+pub struct RasterKernel {
+    name: String,
+    layout: BoundLayout,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl RasterKernel {
+    /// Builds the pipeline of `vertex` and `fragment` of shader file `path`; both sides of triangles are drawn.
+    pub fn new(
+        gpu: &GpuContext,
+        sources: &ShaderSources,
+        path: &str,
+        (vertex, fragment): (&str, &str),
+        targets: &RasterTargets<'_>,
+    ) -> Result<Self, GpuError> {
+        let module = Module::parse(path, sources.assemble(path)?)?;
+        let mut bindings = module.bindings(path, vertex)?;
+        for found in module.bindings(path, fragment)? {
+            if !bindings.contains(&found) {
+                bindings.push(found);
+            }
+        }
+        let layout = BoundLayout::new(gpu, path, bindings, wgpu::ShaderStages::VERTEX_FRAGMENT);
+        let shader = shader_module(gpu, path, &module);
+        let colors: Vec<Option<wgpu::ColorTargetState>> =
+            targets.colors.iter().map(|&format| Some(format.into())).collect();
+        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(vertex),
+            layout: Some(&layout.pipeline_layout(gpu, vertex)),
+            vertex: wgpu::VertexState {
+                module: &shader,
+                entry_point: Some(vertex),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: targets.depth,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(targets.depth_compare),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &shader,
+                entry_point: Some(fragment),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &colors,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        gpu.check()?;
+        Ok(Self { name: vertex.to_owned(), layout, pipeline })
+    }
+
+    /// A bind group from what `find` returns for each variable's name.
+    pub fn bind<'a>(
+        &self,
+        gpu: &GpuContext,
+        find: impl Fn(&str) -> Option<Binding<'a>>,
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        self.layout.bind(gpu, &self.name, find)
+    }
+
+    /// The pipeline.
+    pub fn pipeline(&self) -> &wgpu::RenderPipeline {
+        &self.pipeline
+    }
+}
+
+fn shader_module(gpu: &GpuContext, path: &str, module: &Module) -> wgpu::ShaderModule {
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(path),
+        source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()),
+    })
+}
+
+#[derive(Debug)]
+struct BoundLayout {
+    bindings: Vec<Reflected>,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl BoundLayout {
+    fn new(gpu: &GpuContext, path: &str, bindings: Vec<Reflected>, stages: wgpu::ShaderStages) -> Self {
+        let entries: Vec<wgpu::BindGroupLayoutEntry> = bindings
+            .iter()
+            .map(|b| wgpu::BindGroupLayoutEntry {
+                binding: b.binding,
+                visibility: stages,
+                ty: binding_type(b.access),
+                count: None,
+            })
+            .collect();
+        let layout = gpu
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(path), entries: &entries });
+        Self { bindings, layout }
+    }
+
+    fn pipeline_layout(&self, gpu: &GpuContext, label: &str) -> wgpu::PipelineLayout {
+        gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(label),
+            bind_group_layouts: &[Some(&self.layout)],
+            ..Default::default()
+        })
+    }
+
+    fn bind<'a>(
+        &self,
+        gpu: &GpuContext,
+        name: &str,
+        find: impl Fn(&str) -> Option<Binding<'a>>,
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        let mut entries = Vec::with_capacity(self.bindings.len());
+        for b in &self.bindings {
+            let found = find(&b.name).ok_or_else(|| GpuError::Shader {
+                shader: name.to_owned(),
+                message: format!("nothing is there to bind to `{}`", b.name),
+            })?;
+            let resource = match found {
+                Binding::Buffer(buffer) => buffer.as_entire_binding(),
+                Binding::Texture(view) => wgpu::BindingResource::TextureView(view),
+            };
+            entries.push(wgpu::BindGroupEntry { binding: b.binding, resource });
+        }
+        Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(name),
+            layout: &self.layout,
+            entries: &entries,
+        }))
+    }
+}
+
+fn binding_type(access: Access) -> wgpu::BindingType {
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    match access {
+        Access::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
+        Access::StorageRead => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+        Access::StorageWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+        Access::Texture(unsigned) => wgpu::BindingType::Texture {
+            sample_type: if unsigned {
+                wgpu::TextureSampleType::Uint
+            } else {
+                wgpu::TextureSampleType::Float { filterable: false }
+            },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+    }
+}

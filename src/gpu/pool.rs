@@ -1,0 +1,72 @@
+//! Buffers that are lent to a frame and taken back, with an exact account of their bytes.
+
+/// How many frames a free buffer may lie unused before it is dropped.
+const KEEP_FRAMES: u64 = 4;
+
+#[derive(Debug)]
+struct Free {
+    buffer: wgpu::Buffer,
+    last_used: u64,
+}
+
+/// A pool of buffers, keyed by size and usage.
+#[derive(Debug, Default)]
+pub struct BufferPool {
+    free: Vec<Free>,
+    frame: u64,
+    lent_bytes: u64,
+    peak_bytes: u64,
+}
+
+impl BufferPool {
+    /// Starts a frame: forgets the last peak and drops what was not used for some frames.
+    pub fn begin_frame(&mut self) {
+        self.frame += 1;
+        self.peak_bytes = self.lent_bytes;
+        let frame = self.frame;
+        self.free.retain(|f| f.last_used + KEEP_FRAMES >= frame);
+    }
+
+    /// Lends a buffer of exactly `bytes` (rounded up to 4) with `usage`; its content is undefined.
+    pub fn lend(&mut self, device: &wgpu::Device, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let size = bytes.max(4).next_multiple_of(4);
+        self.lent_bytes += size;
+        self.peak_bytes = self.peak_bytes.max(self.lent_bytes);
+        let found = self.free.iter().position(|f| f.buffer.size() == size && f.buffer.usage() == usage);
+        match found {
+            Some(index) => self.free.swap_remove(index).buffer,
+            None => device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            }),
+        }
+    }
+
+    /// Takes a buffer back.
+    pub fn give_back(&mut self, buffer: wgpu::Buffer) {
+        self.lent_bytes -= buffer.size();
+        self.free.push(Free { buffer, last_used: self.frame });
+    }
+
+    /// Drops all free buffers.
+    pub fn clear(&mut self) {
+        self.free.clear();
+    }
+
+    /// Bytes lent now.
+    pub fn lent_bytes(&self) -> u64 {
+        self.lent_bytes
+    }
+
+    /// Most bytes lent at once since the frame began.
+    pub fn peak_bytes(&self) -> u64 {
+        self.peak_bytes
+    }
+
+    /// Bytes kept for later frames.
+    pub fn free_bytes(&self) -> u64 {
+        self.free.iter().map(|f| f.buffer.size()).sum()
+    }
+}

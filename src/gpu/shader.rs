@@ -1,0 +1,179 @@
+//! WGSL: `#import`, and what an entry point binds.
+//!
+//! `#import "path"` on a line of its own pastes a file once per module, wherever it is named first; an unknown path is an
+//! error. There are no conditions and no renaming.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+use wgpu::naga;
+
+use super::GpuError;
+
+/// All WGSL files by their path below `shaders/`.
+#[derive(Clone, Debug, Default)]
+pub struct ShaderSources {
+    files: BTreeMap<&'static str, Cow<'static, str>>,
+}
+
+impl ShaderSources {
+    /// Sources from (path, text) pairs.
+    pub fn new(files: &[(&'static str, &'static str)]) -> Self {
+        Self { files: files.iter().map(|&(path, text)| (path, Cow::Borrowed(text))).collect() }
+    }
+
+    /// Paths of all files, sorted.
+    pub fn paths(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.files.keys().copied()
+    }
+
+    /// The text of a file.
+    pub fn text(&self, path: &str) -> Option<&str> {
+        self.files.get(path).map(AsRef::as_ref)
+    }
+
+    /// The same sources with `from` replaced by `to` in one file: for tests that break a formula on purpose.
+    pub fn with_replacement(mut self, path: &str, from: &str, to: &str) -> Option<Self> {
+        let text = self.files.get_mut(path)?;
+        if !text.contains(from) {
+            return None;
+        }
+        *text = Cow::Owned(text.replace(from, to));
+        Some(self)
+    }
+
+    /// The module of `root` with all imports pasted.
+    pub fn assemble(&self, root: &str) -> Result<String, GpuError> {
+        let mut out = String::new();
+        self.paste(root, &mut out, &mut BTreeSet::new())?;
+        Ok(out)
+    }
+
+    fn paste(&self, path: &str, out: &mut String, done: &mut BTreeSet<String>) -> Result<(), GpuError> {
+        if !done.insert(path.to_owned()) {
+            return Ok(());
+        }
+        let text = self.text(path).ok_or_else(|| shader_error(path, "no such file"))?;
+        for line in text.lines() {
+            if let Some(rest) = line.trim_start().strip_prefix("#import") {
+                let name = rest.trim().trim_matches('"');
+                if self.text(name).is_none() {
+                    return Err(shader_error(path, &format!("imports `{name}`, which does not exist")));
+                }
+                self.paste(name, out, done)?;
+            } else {
+                out.push_str(line);
+                out.push('\n');
+            }
+        }
+        Ok(())
+    }
+}
+
+fn shader_error(shader: &str, message: &str) -> GpuError {
+    GpuError::Shader { shader: shader.to_owned(), message: message.to_owned() }
+}
+
+/// How an entry point uses a resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Uniform buffer of this many bytes.
+    Uniform(u32),
+    /// Read-only storage buffer.
+    StorageRead,
+    /// Storage buffer that is written.
+    StorageWrite,
+    /// Sampled texture that is only loaded from, with unsigned integers (true) or floats.
+    Texture(bool),
+}
+
+/// A resource of an entry point.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reflected {
+    /// Name of the WGSL variable.
+    pub name: String,
+    /// Its binding in group 0.
+    pub binding: u32,
+    /// How it is used.
+    pub access: Access,
+}
+
+/// A parsed and validated module.
+#[derive(Debug)]
+pub struct Module {
+    /// naga's view of it.
+    pub ir: naga::Module,
+    info: naga::valid::ModuleInfo,
+    /// The assembled text.
+    pub text: String,
+}
+
+impl Module {
+    /// Parses and validates assembled WGSL; `name` is for messages.
+    pub fn parse(name: &str, text: String) -> Result<Self, GpuError> {
+        let ir = naga::front::wgsl::parse_str(&text)
+            .map_err(|error| shader_error(name, &error.emit_to_string(&text)))?;
+        let info = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            naga::valid::Capabilities::default(),
+        )
+        .validate(&ir)
+        .map_err(|error| shader_error(name, &error.emit_to_string(&text)))?;
+        Ok(Self { ir, info, text })
+    }
+
+    /// What `entry` binds, by binding number.
+    pub fn bindings(&self, name: &str, entry: &str) -> Result<Vec<Reflected>, GpuError> {
+        let index = self
+            .ir
+            .entry_points
+            .iter()
+            .position(|e| e.name == entry)
+            .ok_or_else(|| shader_error(name, &format!("has no entry point `{entry}`")))?;
+        let used = self.info.get_entry_point(index);
+        let mut found = Vec::new();
+        for (handle, variable) in self.ir.global_variables.iter() {
+            let Some(binding) = variable.binding else { continue };
+            if used[handle].is_empty() {
+                continue;
+            }
+            if binding.group != 0 {
+                return Err(shader_error(name, "only bind group 0 is used"));
+            }
+            let label = variable.name.clone().unwrap_or_default();
+            let access = self
+                .access(variable)
+                .ok_or_else(|| shader_error(name, &format!("`{label}` is of a kind that is not supported")))?;
+            found.push(Reflected { name: label, binding: binding.binding, access });
+        }
+        found.sort_by_key(|r| r.binding);
+        if let Some(pair) = found.windows(2).find(|pair| pair[0].binding == pair[1].binding) {
+            let message = format!("`{}` and `{}` share binding {}", pair[0].name, pair[1].name, pair[0].binding);
+            return Err(shader_error(name, &message));
+        }
+        Ok(found)
+    }
+
+    /// Whether the module declares an `override` of this name.
+    pub fn has_override(&self, name: &str) -> bool {
+        self.ir.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(name))
+    }
+
+    fn access(&self, variable: &naga::GlobalVariable) -> Option<Access> {
+        let inner = &self.ir.types[variable.ty].inner;
+        match variable.space {
+            naga::AddressSpace::Uniform => Some(Access::Uniform(inner.size(self.ir.to_ctx()))),
+            naga::AddressSpace::Storage { access } if access.contains(naga::StorageAccess::STORE) => {
+                Some(Access::StorageWrite)
+            }
+            naga::AddressSpace::Storage { .. } => Some(Access::StorageRead),
+            naga::AddressSpace::Handle => match inner {
+                naga::TypeInner::Image { class: naga::ImageClass::Sampled { kind, .. }, .. } => {
+                    Some(Access::Texture(*kind == naga::ScalarKind::Uint))
+                }
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! GPU time per pass by timestamp queries; absent wherever the numbers cannot be trusted.
+
+use super::{GpuContext, GpuError, readback};
+
+/// Most passes that one frame times; later ones go untimed.
+const MAX_SPANS: u32 = 1024;
+
+/// Timestamps around the passes of one frame.
+#[derive(Debug)]
+pub struct Timing {
+    queries: Option<wgpu::QuerySet>,
+    labels: Vec<&'static str>,
+}
+
+impl Timing {
+    /// A timing for one context.
+    pub fn new(gpu: &GpuContext) -> Self {
+        let queries = gpu.timestamps.then(|| {
+            gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("timing"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2 * MAX_SPANS,
+            })
+        });
+        Self { queries, labels: Vec::new() }
+    }
+
+    /// Forgets the last frame.
+    pub fn begin_frame(&mut self) {
+        self.labels.clear();
+    }
+
+    /// Starts timing a pass: the query set with the indices of its begin and end, if it can be timed.
+    pub fn span(&mut self, label: &'static str) -> Option<(&wgpu::QuerySet, u32, u32)> {
+        let queries = self.queries.as_ref()?;
+        let index = u32::try_from(self.labels.len()).ok().filter(|&i| i < MAX_SPANS)?;
+        self.labels.push(label);
+        Some((queries, 2 * index, 2 * index + 1))
+    }
+
+    /// Milliseconds per label, summed; a label with any span that is zero, negative or longer than `wall_ms` is left out.
+    /// To be called after the frame's submission is done.
+    pub fn collect(&self, gpu: &GpuContext, wall_ms: f64) -> Result<Vec<(&'static str, f64)>, GpuError> {
+        let Some(queries) = &self.queries else { return Ok(Vec::new()) };
+        if self.labels.is_empty() {
+            return Ok(Vec::new());
+        }
+        let count = 2 * u32::try_from(self.labels.len()).unwrap_or(MAX_SPANS);
+        let bytes = u64::from(count) * 8;
+        let resolved = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("timing"),
+            size: bytes,
+            usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        // A submission of its own: resolving in the one that wrote the queries gives zeros on some Vulkan drivers.
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.resolve_query_set(queries, 0..count, &resolved, 0);
+        gpu.queue.submit([encoder.finish()]);
+        let ticks: Vec<u64> = readback::read(gpu, &resolved, bytes)?;
+        let period_ms = f64::from(gpu.queue.get_timestamp_period()) * 1e-6;
+        let mut sums: Vec<(&'static str, f64, bool)> = Vec::new();
+        for (label, span) in self.labels.iter().zip(ticks.chunks_exact(2)) {
+            let ms = span[1].checked_sub(span[0]).map_or(-1.0, |t| t as f64 * period_ms);
+            let trusted = ms > 0.0 && ms <= wall_ms;
+            match sums.iter_mut().find(|(l, ..)| l == label) {
+                Some(sum) => {
+                    sum.1 += ms;
+                    sum.2 &= trusted;
+                }
+                None => sums.push((label, ms, trusted)),
+            }
+        }
+        Ok(sums.into_iter().filter(|s| s.2).map(|(label, ms, _)| (label, ms)).collect())
+    }
+}

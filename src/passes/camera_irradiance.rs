@@ -1,0 +1,42 @@
+//! Camera irradiance — the light on what each pixel sees: from the receivers' maps under water, from the suns above it.
+
+use super::camera_hits::{pixel_step, wanted_for_camera};
+use super::desc::{PassDesc, Repeat};
+use super::gpu_data::{SunLight, vec4};
+use super::slot::Slot;
+use crate::scene::facts::SceneFacts;
+
+/// Suns that the shader has room for.
+pub const MAX_SUNS: usize = 16;
+
+/// See the module.
+pub const PASS: PassDesc = PassDesc {
+    name: "camera_irradiance",
+    repeat: Repeat::Band,
+    reads: &[Slot::VisiblePosition, Slot::VisibleNormal, Slot::Geometry, Slot::Instances, Slot::AllReceivers],
+    reads_if_present: &[Slot::Irradiance, Slot::LevelMaps],
+    writes: &[Slot::VisibleIrradiance],
+    wanted: |facts| {
+        wanted_for_camera(facts)?;
+        if facts.wants_camera_irradiance() {
+            Ok("the picture needs the light on what it shows".to_owned())
+        } else {
+            Err("neither radiance nor irradiance is among the layers".to_owned())
+        }
+    },
+    steps: |facts, run| {
+        let mut steps = pixel_step("camera_irradiance_main", facts, run);
+        for step in &mut steps {
+            step.uniforms.push(("suns", suns(facts)));
+        }
+        steps
+    },
+};
+
+fn suns(facts: &SceneFacts) -> Vec<u8> {
+    let mut suns = [SunLight::default(); MAX_SUNS];
+    for (slot, (to_light, irradiance)) in suns.iter_mut().zip(&facts.air_suns) {
+        *slot = SunLight { to_light: vec4(*to_light, 0.0), irradiance_w_m2: vec4(*irradiance, 0.0) };
+    }
+    bytemuck::bytes_of(&suns).to_vec()
+}

@@ -1,0 +1,29 @@
+//! Deposit — lays the beams of a sun on the receivers' maps by exact texel coverage.
+
+use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
+use super::light::light_uniform;
+use super::slot::Slot;
+use super::surface::wanted_for_sun;
+
+/// See the module.
+pub const PASS: PassDesc = PassDesc {
+    name: "deposit",
+    repeat: Repeat::Sun,
+    reads: &[Slot::Surface, Slot::Beams, Slot::Hits, Slot::Receivers],
+    reads_if_present: &[],
+    writes: &[Slot::Flux, Slot::Energy, Slot::SplitQueue, Slot::WideQueue],
+    wanted: wanted_for_sun,
+    steps: |facts, run| {
+        let Run::Sun(index) = run else { return Vec::new() };
+        let groups = facts.quality.water_cells.div_ceil(8);
+        let uniforms = vec![("light", light_uniform(facts, index))];
+        vec![
+            Step {
+                entry: "deposit_main",
+                work: Work::Compute(Groups::Direct([groups, groups, 1])),
+                uniforms: uniforms.clone(),
+            },
+            Step { entry: "deposit_wide", work: Work::Compute(Groups::Queue(Slot::WideQueue)), uniforms },
+        ]
+    },
+};

@@ -1,0 +1,95 @@
+//! What a pass is.
+
+use super::slot::Slot;
+use crate::scene::facts::SceneFacts;
+use crate::scene::placement::LevelBox;
+
+/// How often a pass runs in a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Repeat {
+    /// Once per level map that is not cached.
+    LevelMap,
+    /// Once per sun.
+    Sun,
+    /// Once per band of the picture.
+    Band,
+}
+
+/// A run of a pass: which of its repetitions it is.
+#[derive(Clone, Copy, Debug)]
+pub enum Run<'a> {
+    /// Build this level map at word `arena_offset` of the arena, from the mesh whose triangles begin at `first_triangle`
+    /// (in 16-byte units of the geometry).
+    LevelMap {
+        /// The map's box.
+        level_box: &'a LevelBox,
+        /// Word offset in the arena.
+        arena_offset: u32,
+        /// Where the mesh's triangles begin.
+        first_triangle: u32,
+        /// How many there are.
+        triangles: u32,
+    },
+    /// Follow this sun.
+    Sun(usize),
+    /// Make these rows of the picture.
+    Band {
+        /// First row.
+        first_row: u32,
+        /// Number of rows.
+        rows: u32,
+    },
+}
+
+/// How many workgroups a step runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Groups {
+    /// As many as this.
+    Direct([u32; 3]),
+    /// As many as the head of this queue says.
+    Queue(Slot),
+}
+
+/// What a step does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// A compute dispatch.
+    Compute(Groups),
+    /// Draws the front (nearest) or back (farthest) of a level map.
+    DrawLevelMap {
+        /// The farthest instead of the nearest.
+        back: bool,
+        /// Vertices.
+        vertices: u32,
+    },
+}
+
+/// One dispatch or draw.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Entry point (of a draw: the vertex entry point).
+    pub entry: &'static str,
+    /// What it does.
+    pub work: Work,
+    /// Bytes of the uniform variables, by name.
+    pub uniforms: Vec<(&'static str, Vec<u8>)>,
+}
+
+/// A pass: everything the planner and the executor need to know of it.
+#[derive(Clone, Copy, Debug)]
+pub struct PassDesc {
+    /// Name; the shader is `shaders/passes/<name>.wgsl`.
+    pub name: &'static str,
+    /// How often it runs.
+    pub repeat: Repeat,
+    /// Slots it cannot do without.
+    pub reads: &'static [Slot],
+    /// Slots it takes where they are there.
+    pub reads_if_present: &'static [Slot],
+    /// Slots it fills.
+    pub writes: &'static [Slot],
+    /// Why it is in (`Ok`) or out (`Err`), as a sentence.
+    pub wanted: fn(&SceneFacts) -> Result<String, String>,
+    /// Its dispatches for one run.
+    pub steps: fn(&SceneFacts, Run<'_>) -> Vec<Step>,
+}

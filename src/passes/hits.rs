@@ -1,0 +1,16 @@
+//! Hits — what each ray strikes first: the floor exactly, meshes by marching into their level maps; the nearest wins.
+
+use super::desc::{PassDesc, Repeat};
+use super::slot::Slot;
+use super::surface::{grid_step, wanted_for_sun};
+
+/// See the module.
+pub const PASS: PassDesc = PassDesc {
+    name: "hits",
+    repeat: Repeat::Sun,
+    reads: &[Slot::Surface, Slot::Beams, Slot::Receivers],
+    reads_if_present: &[Slot::LevelMaps],
+    writes: &[Slot::Hits],
+    wanted: wanted_for_sun,
+    steps: |facts, run| grid_step("hits_main", facts, run),
+};

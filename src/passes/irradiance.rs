@@ -1,0 +1,59 @@
+//! Irradiance — turns a sun's flux sums into W/m², adds them to the floor's map, and sums what landed.
+
+use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
+use super::gpu_data::{Resolve, vec4};
+use super::light::{light_uniform, receivers};
+use super::slot::{self, Slot};
+use super::surface::wanted_for_sun;
+
+/// See the module.
+pub const PASS: PassDesc = PassDesc {
+    name: "irradiance",
+    repeat: Repeat::Sun,
+    reads: &[Slot::Flux, Slot::Energy],
+    reads_if_present: &[],
+    writes: &[Slot::Irradiance],
+    wanted: |facts| {
+        wanted_for_sun(facts)?;
+        let mut parts = Vec::new();
+        if let Some(map) = facts.floor_map {
+            parts.push(format!("the floor's map of {} × {} texels", map.width, map.height));
+        }
+        let wet = facts.wet_objects().count();
+        if wet > 0 {
+            let side = facts.quality.level_map_texels;
+            parts.push(format!("{wet} object map{} of {side}² texels", if wet == 1 { "" } else { "s" }));
+        }
+        Ok(parts.join(" and "))
+    },
+    steps: |facts, run| {
+        let Run::Sun(index) = run else { return Vec::new() };
+        let mut steps = Vec::new();
+        for (number, receiver) in receivers(facts, index, |_| 0).iter().enumerate() {
+            let texels = receiver.map_width * receiver.map_height;
+            if texels == 0 {
+                continue;
+            }
+            let resolve = Resolve {
+                light_w_m2: vec4(facts.suns[index].irradiance_w_m2, 0.0),
+                first_texel: receiver.map_offset,
+                texel_count: texels,
+                first_output: receiver.irradiance_offset,
+                adds: u32::from(number == 0 && index > 0),
+                density_per_flux: receiver.density_per_flux,
+                ..Resolve::default()
+            };
+            let groups = texels.div_ceil(64);
+            let columns = groups.min(slot::QUEUE_CAPACITY);
+            steps.push(Step {
+                entry: "irradiance_main",
+                work: Work::Compute(Groups::Direct([columns, groups.div_ceil(columns), 1])),
+                uniforms: vec![
+                    ("light", light_uniform(facts, index)),
+                    ("resolve", bytemuck::bytes_of(&resolve).to_vec()),
+                ],
+            });
+        }
+        steps
+    },
+};

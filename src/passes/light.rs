@@ -1,0 +1,116 @@
+//! What the passes that follow a sun share: its uniform, and the receivers' maps.
+
+use super::gpu_data::{Light, Receiver, vec2, vec4};
+use super::slot;
+use crate::physics::refraction;
+use crate::scene::facts::{SceneFacts, SunFacts};
+
+/// Size of a receiver on the GPU.
+pub const RECEIVER_BYTES: u64 = size_of::<Receiver>() as u64;
+/// Footprints of more texels than this get workgroups of their own.
+const WIDE_TEXELS: u32 = 1024;
+/// Counts that the largest possible beam makes: 2³⁰, so that a deposit fits u32 with room for rounding.
+const BEAM_COUNTS: f64 = 1_073_741_824.0;
+/// The same in the account of a workgroup, whose 128 beams must fit u32 together.
+const BEAM_ACCOUNT_COUNTS: f64 = 8_388_608.0;
+
+/// Flux that one beam can carry at most under unit irradiance, m².
+fn largest_beam_m2(facts: &SceneFacts, sun: &SunFacts) -> f64 {
+    let cells = f64::from(facts.quality.water_cells);
+    let cell = sun.window.size() / cells;
+    let sideways = glam::DVec2::new(sun.to_light.x, sun.to_light.z).length();
+    0.5 * cell.x * cell.y * (sun.to_light.y + facts.surface.max_slope() * sideways)
+}
+
+/// The uniform of one sun.
+pub fn light_uniform(facts: &SceneFacts, index: usize) -> Vec<u8> {
+    let sun = &facts.suns[index];
+    let cells = facts.quality.water_cells;
+    let beam_m2 = largest_beam_m2(facts, sun);
+    let light = Light {
+        to_light: vec4(sun.to_light, 0.0),
+        extinction_per_m: vec4(facts.extinction_per_m, 0.0),
+        window_min_m: vec2(sun.window.min),
+        cell_m: vec2(sun.window.size() / f64::from(cells)),
+        cells,
+        wave_count: facts.surface.components.len() as u32,
+        receiver_count: 1 + facts.objects.len() as u32,
+        has_floor: u32::from(facts.floor.is_some()),
+        ior: facts.ior as f32,
+        flux_scale: (BEAM_COUNTS / beam_m2) as f32,
+        energy_scale: energy_scale(facts, index) as f32,
+        channels: facts.channels(),
+        split_levels: facts.quality.split_levels,
+        queue_capacity: slot::queue_capacity(facts),
+        wide_texels: WIDE_TEXELS,
+        triangle_scale: (BEAM_ACCOUNT_COUNTS / beam_m2) as f32,
+    };
+    bytemuck::bytes_of(&light).to_vec()
+}
+
+/// Counts per m² in the energy account of a sun; a power of two, so that scaling is exact.
+pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
+    let all_m2 = largest_beam_m2(facts, &facts.suns[index]) * 2.0 * f64::from(facts.quality.water_cells).powi(2);
+    (2.0_f64.powi(60) / all_m2).log2().floor().exp2()
+}
+
+/// The receivers of one sun: the floor, then the objects; `level_map_offset` tells where in the arena an object's map lies.
+pub fn receivers(facts: &SceneFacts, index: usize, level_map_offset: impl Fn(usize) -> u32) -> Vec<Receiver> {
+    let mut all = vec![floor_receiver(facts)];
+    let texels = slot::object_texels(facts);
+    let wet = facts.wet_objects().count() as u32;
+    let mut nth_wet = 0;
+    for (object, level_box) in facts.suns[index].boxes.iter().enumerate() {
+        let Some(level_box) = level_box else {
+            all.push(Receiver::default());
+            continue;
+        };
+        let row = |r: glam::DVec4| [r.x as f32, r.y as f32, r.z as f32, r.w as f32];
+        all.push(Receiver {
+            u_row: row(level_box.map_from_local[0]),
+            v_row: row(level_box.map_from_local[1]),
+            s_row: row(level_box.map_from_local[2]),
+            map_width: level_box.key.texels,
+            map_height: level_box.key.texels,
+            map_offset: slot::floor_texels(facts) + nth_wet * texels,
+            level_map_offset: level_map_offset(object),
+            s_min: level_box.s_range[0] as f32,
+            s_max: level_box.s_range[1] as f32,
+            level_count: level_box.key.levels(),
+            density_per_flux: level_box.density_per_flux as f32,
+            axis: vec4(level_box.axis, 0.0),
+            irradiance_offset: slot::floor_texels(facts) + (index as u32 * wet + nth_wet) * texels,
+            s_per_m: level_box.s_per_m as f32,
+            ..Receiver::default()
+        });
+        nth_wet += 1;
+    }
+    all
+}
+
+fn floor_receiver(facts: &SceneFacts) -> Receiver {
+    let Some(floor) = &facts.floor else { return Receiver::default() };
+    let mut receiver = Receiver {
+        s_row: [0.0, -1.0, 0.0, floor.y_m as f32],
+        s_per_m: 1.0,
+        axis: [0.0, -1.0, 0.0, 0.0],
+        floor_min_m: vec2(floor.rect.min),
+        floor_max_m: vec2(floor.rect.max),
+        density_per_flux: 1.0,
+        ..Receiver::default()
+    };
+    if let Some(map) = facts.floor_map {
+        let per_m = glam::DVec2::new(f64::from(map.width), f64::from(map.height)) / map.rect.size();
+        receiver.u_row = [per_m.x as f32, 0.0, 0.0, (-map.rect.min.x * per_m.x) as f32];
+        receiver.v_row = [0.0, 0.0, per_m.y as f32, (-map.rect.min.y * per_m.y) as f32];
+        receiver.map_width = map.width;
+        receiver.map_height = map.height;
+        receiver.density_per_flux = (per_m.x * per_m.y) as f32;
+    }
+    receiver
+}
+
+/// Direction of the sun's light under flat water, for plans and tests.
+pub fn flat_direction(facts: &SceneFacts, index: usize) -> Option<glam::DVec3> {
+    refraction::refract_direction(-facts.suns[index].to_light, glam::DVec3::Y, facts.ior)
+}

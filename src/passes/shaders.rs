@@ -1,0 +1,47 @@
+//! The WGSL files, built into the program.
+
+use crate::gpu::shader::ShaderSources;
+
+/// Lists files below `shaders/` with their text.
+macro_rules! embed {
+    ($($path:literal),+ $(,)?) => {
+        &[$(($path, include_str!(concat!("../../shaders/", $path)))),+]
+    };
+}
+
+/// All shader files; a test compares the list with the folder.
+pub fn embedded() -> ShaderSources {
+    ShaderSources::new(embed![
+        "lib/attenuation.wgsl",
+        "lib/coverage.wgsl",
+        "lib/fresnel.wgsl",
+        "lib/refraction.wgsl",
+        "lib/sky.wgsl",
+        "lib/turns.wgsl",
+        "passes/beams.wgsl",
+        "passes/camera_hits.wgsl",
+        "passes/camera_irradiance.wgsl",
+        "passes/deposit.wgsl",
+        "passes/hits.wgsl",
+        "passes/irradiance.wgsl",
+        "passes/level_map.wgsl",
+        "passes/level_map_pyramid.wgsl",
+        "passes/shade.wgsl",
+        "passes/split.wgsl",
+        "passes/surface.wgsl",
+        "shared/account.wgsl",
+        "shared/beam_triangle.wgsl",
+        "shared/floor_distance.wgsl",
+        "shared/flux.wgsl",
+        "shared/footprint.wgsl",
+        "shared/geometry.wgsl",
+        "shared/grid_beam.wgsl",
+        "shared/level_map_view.wgsl",
+        "shared/level_maps.wgsl",
+        "shared/light.wgsl",
+        "shared/receivers.wgsl",
+        "shared/trace_light.wgsl",
+        "shared/view.wgsl",
+        "shared/water_surface.wgsl",
+    ])
+}

@@ -1,0 +1,211 @@
+//! What flows between the passes: the one table of buffers, with what they hold, in which unit, and how large they are.
+
+use crate::scene::facts::SceneFacts;
+
+/// Words at the head of a queue: the workgroups of the dispatch that empties it.
+pub const QUEUE_HEAD_WORDS: u64 = 3;
+/// Most items of a queue; a dispatch takes no more workgroups than this along one axis.
+pub const QUEUE_CAPACITY: u32 = 65_535;
+/// (low, high) pairs of the energy account, see `shaders/shared/flux.wgsl`.
+pub const ENERGY_TERMS: u64 = 16;
+/// Most bytes of one layer of a band of the picture.
+pub const BAND_BYTES: u64 = 32 << 20;
+
+/// How long a slot lives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lifetime {
+    /// Filled by the host before the frame.
+    Upload,
+    /// Used anew for every sun.
+    Sun,
+    /// Until the end of the frame.
+    Frame,
+    /// Used anew for every band of the picture.
+    Band,
+    /// Kept from frame to frame.
+    Cached,
+}
+
+/// A buffer that passes share; WGSL variables that bind it have [`SlotInfo::name`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Slot {
+    /// Wave components.
+    Waves,
+    /// Triangles and hierarchies of the meshes.
+    Geometry,
+    /// Placed meshes.
+    Instances,
+    /// Receivers of the sun at work.
+    Receivers,
+    /// Receivers of all suns.
+    AllReceivers,
+    /// Level maps.
+    LevelMaps,
+    /// The water grid.
+    Surface,
+    /// Rays under the grid.
+    Beams,
+    /// Where they end.
+    Hits,
+    /// Beams to be halved.
+    SplitQueue,
+    /// Footprints for a workgroup of their own.
+    WideQueue,
+    /// Count of beams that stayed torn.
+    Torn,
+    /// Flux sums.
+    Flux,
+    /// Energy account.
+    Energy,
+    /// Irradiance maps.
+    Irradiance,
+    /// What pixels see: where.
+    VisiblePosition,
+    /// What pixels see: normal and distance.
+    VisibleNormal,
+    /// What pixels see: albedo and path.
+    VisibleAlbedo,
+    /// What pixels see: through what.
+    VisibleTransport,
+    /// Light on what pixels see.
+    VisibleIrradiance,
+    /// The picture.
+    Radiance,
+}
+
+/// A row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct SlotInfo {
+    /// Name in WGSL and in plans.
+    pub name: &'static str,
+    /// What one element holds, with its unit.
+    pub holds: &'static str,
+    /// How long it lives.
+    pub lifetime: Lifetime,
+    /// Whether its first words are the workgroups of a dispatch.
+    pub is_queue: bool,
+}
+
+/// All slots.
+pub const SLOTS: [Slot; 21] = [
+    Slot::Waves,
+    Slot::Geometry,
+    Slot::Instances,
+    Slot::Receivers,
+    Slot::AllReceivers,
+    Slot::LevelMaps,
+    Slot::Surface,
+    Slot::Beams,
+    Slot::Hits,
+    Slot::SplitQueue,
+    Slot::WideQueue,
+    Slot::Torn,
+    Slot::Flux,
+    Slot::Energy,
+    Slot::Irradiance,
+    Slot::VisiblePosition,
+    Slot::VisibleNormal,
+    Slot::VisibleAlbedo,
+    Slot::VisibleTransport,
+    Slot::VisibleIrradiance,
+    Slot::Radiance,
+];
+
+impl Slot {
+    /// Name, content and lifetime.
+    pub fn info(self) -> SlotInfo {
+        let (name, holds, lifetime) = match self {
+            Self::Waves => ("waves", "amplitude m, frequency turns/m, phase turns", Lifetime::Upload),
+            Self::Geometry => ("geometry", "hierarchy nodes and triangles, m", Lifetime::Upload),
+            Self::Instances => ("instances", "placement, bounds m, albedo", Lifetime::Upload),
+            Self::Receivers => ("receivers", "map of each receiver for the sun at work", Lifetime::Upload),
+            Self::AllReceivers => ("all_receivers", "map of each receiver for each sun", Lifetime::Upload),
+            Self::LevelMaps => ("level_maps", "front and back depth pyramids, packed normals", Lifetime::Cached),
+            Self::Surface => ("surface", "height m and slope per water vertex", Lifetime::Sun),
+            Self::Beams => ("beams", "refracted direction and transmittance per water vertex", Lifetime::Sun),
+            Self::Hits => ("hits", "map coordinates texels, path m, receiver per water vertex", Lifetime::Sun),
+            Self::SplitQueue => ("split_queue", "beams that straddle receivers", Lifetime::Sun),
+            Self::WideQueue => ("wide_queue", "slices of footprints of many texels", Lifetime::Sun),
+            Self::Torn => ("torn", "count of beams that still straddle after splitting", Lifetime::Sun),
+            Self::Flux => ("flux", "64-bit fixed-point flux per texel and channel", Lifetime::Sun),
+            Self::Energy => ("energy", "64-bit fixed-point flux per term of the account", Lifetime::Sun),
+            Self::Irradiance => ("irradiance", "linear RGB per texel, W/m²", Lifetime::Frame),
+            Self::VisiblePosition => ("visible_position", "surface point m and receiver per pixel", Lifetime::Band),
+            Self::VisibleNormal => ("visible_normal", "normal and distance m per pixel", Lifetime::Band),
+            Self::VisibleAlbedo => ("visible_albedo", "reflectance and way under water m per pixel", Lifetime::Band),
+            Self::VisibleTransport => ("visible_transport", "weights of surface and sky per pixel", Lifetime::Band),
+            Self::VisibleIrradiance => ("visible_irradiance", "linear RGB per pixel, W/m²", Lifetime::Band),
+            Self::Radiance => ("radiance", "linear RGBA per pixel, W/(m² sr)", Lifetime::Band),
+        };
+        SlotInfo { name, holds, lifetime, is_queue: matches!(self, Self::SplitQueue | Self::WideQueue) }
+    }
+
+    /// The slot of this name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        SLOTS.into_iter().find(|slot| slot.info().name == name)
+    }
+
+    /// Size for a scene, bytes. Uploads and level maps are sized by what is uploaded or cached.
+    pub fn bytes(self, facts: &SceneFacts) -> u64 {
+        let side = u64::from(facts.quality.water_cells) + 1;
+        let channels = u64::from(facts.channels());
+        let capacity = u64::from(queue_capacity(facts));
+        let pixels = facts.camera.map_or(0, |c| u64::from(c.width) * u64::from(band_rows(c.width, c.height)));
+        match self {
+            Self::Surface | Self::Beams | Self::Hits => 16 * side * side,
+            Self::SplitQueue => 4 * (QUEUE_HEAD_WORDS + capacity),
+            Self::WideQueue => 4 * (QUEUE_HEAD_WORDS + 2 * capacity),
+            Self::Torn => 16,
+            Self::Flux => 8 * channels * u64::from(flux_texels(facts)),
+            Self::Energy => 8 * ENERGY_TERMS,
+            Self::Irradiance => 12 * irradiance_texels(facts),
+            Self::VisiblePosition
+            | Self::VisibleNormal
+            | Self::VisibleAlbedo
+            | Self::VisibleTransport
+            | Self::VisibleIrradiance
+            | Self::Radiance => 16 * pixels,
+            Self::Waves => 16 * facts.surface.components.len() as u64,
+            Self::Instances => 112 * facts.objects.len() as u64,
+            Self::Receivers => super::light::RECEIVER_BYTES * (1 + facts.objects.len() as u64),
+            Self::AllReceivers => {
+                super::light::RECEIVER_BYTES * (1 + facts.objects.len() as u64) * facts.suns.len().max(1) as u64
+            }
+            Self::Geometry | Self::LevelMaps => 0,
+        }
+    }
+}
+
+/// Items a queue of this scene can hold: every beam, up to what a dispatch takes.
+pub fn queue_capacity(facts: &SceneFacts) -> u32 {
+    let cells = facts.quality.water_cells;
+    cells.saturating_mul(cells).saturating_mul(2).min(QUEUE_CAPACITY)
+}
+
+/// Texels of the floor's map.
+pub fn floor_texels(facts: &SceneFacts) -> u32 {
+    facts.floor_map.map_or(0, |map| map.width * map.height)
+}
+
+/// Texels of one object's map.
+pub fn object_texels(facts: &SceneFacts) -> u32 {
+    facts.quality.level_map_texels * facts.quality.level_map_texels
+}
+
+/// Texels of all maps of one sun.
+pub fn flux_texels(facts: &SceneFacts) -> u32 {
+    let objects = u32::try_from(facts.wet_objects().count()).unwrap_or(u32::MAX);
+    floor_texels(facts).saturating_add(object_texels(facts).saturating_mul(objects))
+}
+
+/// Texels of all irradiance maps: one for the floor, one per object and sun.
+pub fn irradiance_texels(facts: &SceneFacts) -> u64 {
+    let objects = facts.wet_objects().count() as u64;
+    u64::from(floor_texels(facts)) + u64::from(object_texels(facts)) * objects * facts.suns.len() as u64
+}
+
+/// Rows of a picture that are made at once.
+pub fn band_rows(width: u32, height: u32) -> u32 {
+    let rows = BAND_BYTES / (16 * u64::from(width.max(1)));
+    u32::try_from(rows).unwrap_or(u32::MAX).clamp(1, height.max(1))
+}

@@ -1,0 +1,170 @@
+//! Objects in local coordinates, and the boxes their level maps are drawn in.
+
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4};
+
+use super::ResolvedScene;
+use crate::mesh::Mesh;
+
+/// An object in local coordinates.
+#[derive(Clone, Debug)]
+pub struct ObjectFacts {
+    /// From the mesh's own coordinates (relative to its origin) to local ones.
+    pub local_from_mesh: DAffine3,
+    /// Lower corner of the bounds.
+    pub min: DVec3,
+    /// Upper corner of the bounds.
+    pub max: DVec3,
+    /// Albedo instead of the materials'.
+    pub albedo: Option<[f64; 3]>,
+    /// Id of the mesh.
+    pub mesh: String,
+    /// Whether light under water can strike it.
+    pub wet: bool,
+}
+
+impl ResolvedScene {
+    /// The objects around the local origin `origin_m`, under waves of at most `max_height_m`.
+    pub fn placed_objects(&self, origin_m: DVec3, max_height_m: f64) -> Vec<ObjectFacts> {
+        self.scene
+            .objects
+            .iter()
+            .zip(&self.meshes)
+            .map(|(object, mesh)| {
+                let [x, y, z, w] = object.rotation;
+                let linear = DMat3::from_quat(DQuat::from_xyzw(x, y, z, w).normalize())
+                    * DMat3::from_diagonal(DVec3::from(object.scale.per_axis()));
+                let translation = linear * mesh.origin_m + DVec3::from(object.translation_m) - origin_m;
+                let local_from_mesh = DAffine3::from_mat3_translation(linear, translation);
+                let (min, max) = bounds(&local_from_mesh, mesh);
+                ObjectFacts {
+                    local_from_mesh,
+                    min,
+                    max,
+                    albedo: object.albedo,
+                    mesh: mesh.id.clone(),
+                    wet: min.y < max_height_m,
+                }
+            })
+            .collect()
+    }
+}
+
+fn corners(mesh: &Mesh) -> [DVec3; 8] {
+    let (low, high) = (mesh.min_m.as_dvec3(), mesh.max_m.as_dvec3());
+    std::array::from_fn(|i| {
+        DVec3::new(
+            if i & 1 == 0 { low.x } else { high.x },
+            if i & 2 == 0 { low.y } else { high.y },
+            if i & 4 == 0 { low.z } else { high.z },
+        )
+    })
+}
+
+fn bounds(local_from_mesh: &DAffine3, mesh: &Mesh) -> (DVec3, DVec3) {
+    let mut min = DVec3::INFINITY;
+    let mut max = DVec3::NEG_INFINITY;
+    for corner in corners(mesh) {
+        let p = local_from_mesh.transform_point3(corner);
+        min = min.min(p);
+        max = max.max(p);
+    }
+    (min, max)
+}
+
+/// What a level map depends on: the mesh and the light's direction in the mesh's own space, not the waves.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LevelMapKey {
+    /// Id of the mesh.
+    pub mesh: String,
+    /// Unit direction in mesh space, in units of 2⁻²⁰.
+    pub direction: [i32; 3],
+    /// Texels along each side.
+    pub texels: u32,
+    /// Layers, nearest first.
+    pub layers: u32,
+}
+
+impl LevelMapKey {
+    /// Bytes of the map in the arena: a pyramid of (front, back) pairs and one packed normal per texel.
+    pub fn bytes(&self) -> u64 {
+        let mut words = u64::from(self.texels) * u64::from(self.texels);
+        let mut side = u64::from(self.texels);
+        while side > 0 {
+            words += 2 * side * side;
+            side /= 2;
+        }
+        4 * words
+    }
+
+    /// Levels of the pyramid, down to one texel.
+    pub fn levels(&self) -> u32 {
+        self.texels.ilog2() + 1
+    }
+}
+
+/// The box of a level map, aligned to the light in mesh space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LevelBox {
+    /// What the map depends on.
+    pub key: LevelMapKey,
+    /// Rows that take mesh coordinates to (u, v) in texels and s in mesh units along the light.
+    pub map_from_mesh: [DVec4; 3],
+    /// Range of s.
+    pub s_range: [f64; 2],
+    /// Rows that take local coordinates to (u, v, s).
+    pub map_from_local: [DVec4; 3],
+    /// Unit direction of the axis in local space.
+    pub axis: DVec3,
+    /// 1 / (area that a texel shows to the axis, m²).
+    pub density_per_flux: f64,
+    /// Units of s per metre along the axis.
+    pub s_per_m: f64,
+}
+
+impl LevelBox {
+    /// The box of `mesh`, placed as `object`, for light that goes along local unit direction `flat`.
+    pub fn new(object: &ObjectFacts, mesh: &Mesh, flat: DVec3, texels: u32) -> Self {
+        let mesh_from_local = object.local_from_mesh.inverse();
+        let in_mesh = (mesh_from_local.matrix3 * flat).normalize();
+        // Rounded, so that equal directions give equal keys and a rebuilt map is the same to the bit.
+        let steps = f64::from(1_u32 << 20);
+        let direction = in_mesh.to_array().map(|c| (c * steps).round() as i32);
+        let along = (DVec3::from_array(direction.map(f64::from)) / steps).normalize();
+        let (across_u, across_v) = along.any_orthonormal_pair();
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for corner in corners(mesh) {
+            let p = DVec3::new(across_u.dot(corner), across_v.dot(corner), along.dot(corner));
+            low = low.min(p);
+            high = high.max(p);
+        }
+        // Two texels of rim, so that silhouettes and bilinear look-ups stay inside.
+        let n = f64::from(texels);
+        let side = (high - low).truncate().max_element().max(1e-9 * high.abs().max_element().max(1e-6)) * n / (n - 4.0);
+        let middle = (low + high) * 0.5;
+        let per_unit = n / side;
+        let s_rim = 1e-3 * (high.z - low.z) + 1e-4 * side;
+        let row = |across: DVec3, centre: f64| (across * per_unit).extend(0.5 * n - centre * per_unit);
+        let map_from_mesh = [row(across_u, middle.x), row(across_v, middle.y), along.extend(0.0)];
+        let map_from_local = map_from_mesh.map(|r| {
+            let linear = mesh_from_local.matrix3.transpose() * r.truncate();
+            linear.extend(r.w + r.truncate().dot(mesh_from_local.translation))
+        });
+        let axis = (object.local_from_mesh.matrix3 * along).normalize();
+        let texel_u = object.local_from_mesh.matrix3 * (across_u / per_unit);
+        let texel_v = object.local_from_mesh.matrix3 * (across_v / per_unit);
+        Self {
+            key: LevelMapKey { mesh: object.mesh.clone(), direction, texels, layers: 1 },
+            map_from_mesh,
+            s_range: [low.z - s_rim, high.z + s_rim],
+            map_from_local,
+            axis,
+            density_per_flux: 1.0 / texel_u.cross(texel_v).dot(axis).abs(),
+            s_per_m: map_from_local[2].truncate().dot(axis),
+        }
+    }
+
+    /// Middle of the box in (u, v), for tests.
+    pub fn middle(&self) -> DVec2 {
+        DVec2::splat(0.5 * f64::from(self.key.texels))
+    }
+}

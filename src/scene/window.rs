@@ -1,0 +1,158 @@
+//! Which piece of the water lights a receiver, and which piece of the floor a camera sees.
+
+use glam::{DVec2, DVec3};
+
+use super::facts::{CameraFacts, SceneFacts};
+use crate::physics::refraction;
+
+/// Directions in which the steepest tilts are looked up.
+const RIM_DIRECTIONS: u32 = 64;
+/// Widening for tilts between the ones looked up.
+const MARGIN: f64 = 0.01;
+/// Rays per side of the picture that look for the visible floor.
+const VIEW_SAMPLES: u32 = 33;
+
+/// A horizontal rectangle, local (x, z) in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rect {
+    /// Lower corner.
+    pub min: DVec2,
+    /// Upper corner.
+    pub max: DVec2,
+}
+
+impl Rect {
+    /// Extent, m.
+    pub fn size(&self) -> DVec2 {
+        self.max - self.min
+    }
+
+    fn including(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+}
+
+/// A part of the floor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Region {
+    /// None of it.
+    Nothing,
+    /// At most this.
+    Rect(Rect),
+}
+
+/// How far a ray under water drifts sideways per metre of depth, over all tilts of the surface.
+struct Drift {
+    low: DVec2,
+    high: DVec2,
+}
+
+fn drift(facts: &SceneFacts, direction: DVec3) -> Option<Drift> {
+    let mut bounds: Option<(DVec2, DVec2)> = None;
+    let rim = facts.surface.rim_slopes(RIM_DIRECTIONS);
+    let tilts = std::iter::once(DVec2::ZERO)
+        .chain(rim.iter().flat_map(|&s| [0.25, 0.5, 0.75, 1.0].map(|share| s * share)));
+    for slope in tilts {
+        let normal = refraction::normal_from_slope(slope.x, slope.y);
+        if direction.dot(normal) >= 0.0 {
+            continue; // looks away from the light: nothing comes through
+        }
+        let Some(ray) = refraction::refract_direction(direction, normal, facts.ior) else { continue };
+        if ray.y >= -1e-3 {
+            continue; // (nearly) upwards: reaches no receiver
+        }
+        let d = DVec2::new(ray.x, ray.z) / -ray.y;
+        bounds = Some(bounds.map_or((d, d), |(low, high)| (low.min(d), high.max(d))));
+    }
+    bounds.map(|(low, high)| {
+        let widen = (high - low) * MARGIN;
+        Drift { low: low - widen, high: high + widen }
+    })
+}
+
+/// Where light must enter to reach `rect` at depths `shallow` … `deep` (m).
+fn entry(rect: Rect, drift: &Drift, shallow: f64, deep: f64) -> Rect {
+    let shallow = shallow.max(0.0);
+    Rect {
+        min: rect.min - (drift.high * shallow).max(drift.high * deep),
+        max: rect.max - (drift.low * shallow).min(drift.low * deep),
+    }
+}
+
+/// The rectangle of water whose light can reach the receivers, or `None` when nothing gets through.
+pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
+    let drift = drift(facts, -to_light)?;
+    let height = facts.surface.max_height_m();
+    let mut window: Option<Rect> = None;
+    let mut add = |rect: Rect| window = Some(window.map_or(rect, |w: Rect| w.including(rect)));
+    if let (Some(map), Some(floor)) = (&facts.floor_map, &facts.floor) {
+        add(entry(map.rect, &drift, -floor.y_m - height, -floor.y_m + height));
+    }
+    let receives = |index: usize| match facts.map_receiver {
+        None => true,
+        Some(super::Receiver::Object(wanted)) => wanted as usize == index,
+        Some(super::Receiver::Floor(_)) => false,
+    };
+    for index in facts.wet_objects().filter(|&index| receives(index)) {
+        let object = &facts.objects[index];
+        let rect = Rect {
+            min: DVec2::new(object.min.x, object.min.z),
+            max: DVec2::new(object.max.x, object.max.z),
+        };
+        add(entry(rect, &drift, -object.max.y - height, -object.min.y + height));
+    }
+    window.map(|w| {
+        // A margin against rounding at the rim, so that no texel at the edge misses a sliver.
+        let margin = DVec2::splat(1e-5 * w.size().max_element().max(1e-6));
+        Rect { min: w.min - margin, max: w.max + margin }
+    })
+}
+
+/// The part of the floor that a camera can see, through waves and all.
+pub fn visible_floor(facts: &SceneFacts, camera: &CameraFacts) -> Region {
+    let Some(floor) = &facts.floor else { return Region::Nothing };
+    let height = facts.surface.max_height_m();
+    let whole = Region::Rect(floor.rect);
+    if camera.eye.y <= height {
+        // Under water (or in the waves) total reflection shows the floor in the surface: anything may be seen.
+        return whole;
+    }
+    let tilts: Vec<DVec2> = std::iter::once(DVec2::ZERO).chain(facts.surface.rim_slopes(16)).collect();
+    let mut seen: Option<Rect> = None;
+    for j in 0..VIEW_SAMPLES {
+        for i in 0..VIEW_SAMPLES {
+            let at = |k: u32| 2.0 * f64::from(k) / f64::from(VIEW_SAMPLES - 1) - 1.0;
+            let offset = camera.right * at(i) + camera.up * at(j);
+            let (eye, direction) = if camera.orthographic {
+                (camera.eye + offset, camera.forward)
+            } else {
+                (camera.eye, (camera.forward + offset).normalize())
+            };
+            if direction.y >= -1e-3 {
+                if direction.y < 0.05 {
+                    return whole; // near the horizon waves turn rays down anywhere
+                }
+                continue;
+            }
+            for level in [height, -height] {
+                let water = eye + direction * ((eye.y - level) / -direction.y);
+                for slope in &tilts {
+                    let normal = refraction::normal_from_slope(slope.x, slope.y);
+                    let Some(ray) = refraction::refract_direction(direction, normal, facts.ior) else { continue };
+                    if ray.y >= -1e-3 {
+                        return whole;
+                    }
+                    let hit = water + ray * ((water.y - floor.y_m) / -ray.y);
+                    let p = DVec2::new(hit.x, hit.z);
+                    let dot = Rect { min: p, max: p };
+                    seen = Some(seen.map_or(dot, |s| s.including(dot)));
+                }
+            }
+        }
+    }
+    let Some(seen) = seen else { return Region::Nothing };
+    let grow = seen.size() * 0.03;
+    let min = (seen.min - grow).max(floor.rect.min);
+    let max = (seen.max + grow).min(floor.rect.max);
+    if min.x < max.x && min.y < max.y { Region::Rect(Rect { min, max }) } else { Region::Nothing }
+}
