@@ -6,6 +6,7 @@ pub mod gpu;
 pub mod http;
 pub mod image;
 pub mod jobs;
+pub mod level_map;
 pub mod mesh;
 pub mod passes;
 pub mod physics;

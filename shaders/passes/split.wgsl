@@ -17,7 +17,6 @@
 #import "shared/account.wgsl"
 
 @group(0) @binding(6) var<storage, read> split_queue: array<u32>;
-@group(0) @binding(11) var<storage, read_write> torn: array<atomic<u32>>; // beams still torn after the last halving
 
 const QUEUE_HEAD: u32 = 3u;
 
@@ -71,7 +70,6 @@ fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
         let b = split_beam(corners);
         if b.transmitted_m2 == 0.0 { continue; }
         if !is_whole(b) {
-            atomicAdd(&torn[0], 1u);
             note_losses(deposit_torn(b));
         } else if b.receiver.x == NO_RECEIVER {
             note_term(TERM_MISSED, b.transmitted_m2);

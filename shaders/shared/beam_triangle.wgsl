@@ -39,6 +39,8 @@ struct Losses {
 fn deposit_torn(b: Beam) -> Losses {
     var losses = Losses(0.0, vec3f(0.0), vec3f(0.0));
     let third = b.transmitted_m2 / 3.0;
+    add_energy(TERM_TORN, b.transmitted_m2 * light.energy_scale);
+    atomicAdd(&energy[2u * TERM_TORN_COUNT], 1u);
     for (var k = 0; k < 3; k++) {
         if b.receiver[k] == NO_RECEIVER {
             losses.missed += third;

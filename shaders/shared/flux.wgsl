@@ -12,6 +12,8 @@ const TERM_EXTINGUISHED: u32 = 3u;
 const TERM_LEFT: u32 = 6u;
 const TERM_LANDED: u32 = 9u;
 const TERM_OVERFLOWS: u32 = 12u; // deposits too large for the fixed point: an error if it ever counts
+const TERM_TORN: u32 = 13u;      // flux of beams that straddle receivers to the end
+const TERM_TORN_COUNT: u32 = 14u; // how many those are
 
 const MAX_DEPOSIT: f32 = 2147483000.0;
 

@@ -51,8 +51,6 @@ pub enum Slot {
     SplitQueue,
     /// Footprints for a workgroup of their own.
     WideQueue,
-    /// Count of beams that stayed torn.
-    Torn,
     /// Flux sums.
     Flux,
     /// Energy account.
@@ -87,7 +85,7 @@ pub struct SlotInfo {
 }
 
 /// All slots.
-pub const SLOTS: [Slot; 21] = [
+pub const SLOTS: [Slot; 20] = [
     Slot::Waves,
     Slot::Geometry,
     Slot::Instances,
@@ -99,7 +97,6 @@ pub const SLOTS: [Slot; 21] = [
     Slot::Hits,
     Slot::SplitQueue,
     Slot::WideQueue,
-    Slot::Torn,
     Slot::Flux,
     Slot::Energy,
     Slot::Irradiance,
@@ -126,7 +123,6 @@ impl Slot {
             Self::Hits => ("hits", "map coordinates texels, path m, receiver per water vertex", Lifetime::Sun),
             Self::SplitQueue => ("split_queue", "beams that straddle receivers", Lifetime::Sun),
             Self::WideQueue => ("wide_queue", "slices of footprints of many texels", Lifetime::Sun),
-            Self::Torn => ("torn", "count of beams that still straddle after splitting", Lifetime::Sun),
             Self::Flux => ("flux", "64-bit fixed-point flux per texel and channel", Lifetime::Sun),
             Self::Energy => ("energy", "64-bit fixed-point flux per term of the account", Lifetime::Sun),
             Self::Irradiance => ("irradiance", "linear RGB per texel, W/m²", Lifetime::Frame),
@@ -135,7 +131,7 @@ impl Slot {
             Self::VisibleAlbedo => ("visible_albedo", "reflectance and way under water m per pixel", Lifetime::Band),
             Self::VisibleTransport => ("visible_transport", "weights of surface and sky per pixel", Lifetime::Band),
             Self::VisibleIrradiance => ("visible_irradiance", "linear RGB per pixel, W/m²", Lifetime::Band),
-            Self::Radiance => ("radiance", "linear RGBA per pixel, W/(m² sr)", Lifetime::Band),
+            Self::Radiance => ("radiance", "linear RGB per pixel, W/(m² sr), and 1 where the floor's map was too small", Lifetime::Band),
         };
         SlotInfo { name, holds, lifetime, is_queue: matches!(self, Self::SplitQueue | Self::WideQueue) }
     }
@@ -145,7 +141,7 @@ impl Slot {
         SLOTS.into_iter().find(|slot| slot.info().name == name)
     }
 
-    /// Size for a scene, bytes. Uploads and level maps are sized by what is uploaded or cached.
+    /// Size for a scene, bytes. Level maps are sized by their cache.
     pub fn bytes(self, facts: &SceneFacts) -> u64 {
         let side = u64::from(facts.quality.water_cells) + 1;
         let channels = u64::from(facts.channels());
@@ -155,7 +151,6 @@ impl Slot {
             Self::Surface | Self::Beams | Self::Hits => 16 * side * side,
             Self::SplitQueue => 4 * (QUEUE_HEAD_WORDS + capacity),
             Self::WideQueue => 4 * (QUEUE_HEAD_WORDS + 2 * capacity),
-            Self::Torn => 16,
             Self::Flux => 8 * channels * u64::from(flux_texels(facts)),
             Self::Energy => 8 * ENERGY_TERMS,
             Self::Irradiance => 12 * irradiance_texels(facts),
@@ -171,7 +166,8 @@ impl Slot {
             Self::AllReceivers => {
                 super::light::RECEIVER_BYTES * (1 + facts.objects.len() as u64) * facts.suns.len().max(1) as u64
             }
-            Self::Geometry | Self::LevelMaps => 0,
+            Self::Geometry => facts.geometry_bytes,
+            Self::LevelMaps => 0,
         }
     }
 }

@@ -11,7 +11,7 @@ pub const PASS: PassDesc = PassDesc {
     repeat: Repeat::Sun,
     reads: &[Slot::SplitQueue, Slot::Waves, Slot::Receivers, Slot::LevelMaps],
     reads_if_present: &[],
-    writes: &[Slot::Flux, Slot::Energy, Slot::Torn],
+    writes: &[Slot::Flux, Slot::Energy],
     wanted: |facts| {
         wanted_for_sun(facts)?;
         let wet = facts.wet_objects().count();

@@ -1,8 +1,19 @@
-//! Plan.
+//! The planner: scene facts and what is cached become the shortest list of passes, with a reason for each that is in or out.
+//!
+//! A pure function without GPU. The list is walked backwards from what the output awaits; a pass stays if something awaited
+//! is written by it and it is wanted. What is cached counts as there, so a cache hit needs no code of its own.
+
+pub mod explain;
+
+use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::passes::{self, PassDesc, Repeat, Slot, slot};
+use crate::scene::LayerName;
+use crate::scene::facts::SceneFacts;
+use crate::scene::placement::LevelMapKey;
 use crate::stats::{AbsentPass, Warning};
 
 /// The shortest list of passes that makes what a scene asks for, and why.
@@ -10,7 +21,7 @@ use crate::stats::{AbsentPass, Warning};
 pub struct Plan {
     /// Passes in the order they run.
     pub passes: Vec<PlannedPass>,
-    /// Passes that are not needed, and why.
+    /// Passes and effects that are not needed, and why.
     pub absent: Vec<AbsentPass>,
     /// What flows between the passes.
     pub slots: Vec<PlannedSlot>,
@@ -40,4 +51,176 @@ pub struct PlannedSlot {
     pub bytes: u64,
     /// What one element holds, with its unit.
     pub holds: String,
+}
+
+/// Why there is no plan.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// A pass needs what no pass before it writes: a defect of the list.
+    #[error("pass `{pass}` reads `{slot}`, which nothing before it writes")]
+    NothingWrites {
+        /// The pass.
+        pass: &'static str,
+        /// The slot.
+        slot: &'static str,
+    },
+}
+
+/// What is already on the GPU.
+pub trait Cached {
+    /// Whether this level map is there.
+    fn has_level_map(&self, key: &LevelMapKey) -> bool;
+    /// Bytes that the level-map arena holds, or would hold for maps of `wanted_bytes` in all.
+    fn arena_bytes(&self, wanted_bytes: u64) -> u64;
+}
+
+/// The slots that hold what the output asks for.
+pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
+    if facts.camera.is_none() {
+        return BTreeSet::from([Slot::Irradiance]);
+    }
+    facts
+        .layers
+        .iter()
+        .map(|layer| match layer {
+            LayerName::Radiance => Slot::Radiance,
+            LayerName::Depth | LayerName::Normal => Slot::VisibleNormal,
+            LayerName::Position => Slot::VisiblePosition,
+            LayerName::Albedo => Slot::VisibleAlbedo,
+            LayerName::Irradiance => Slot::VisibleIrradiance,
+        })
+        .collect()
+}
+
+/// The distinct level maps that a scene needs, in the order of suns and objects.
+pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
+    let mut keys: Vec<&LevelMapKey> = Vec::new();
+    for level_box in facts.suns.iter().flat_map(|sun| sun.boxes.iter().flatten()) {
+        if !keys.contains(&&level_box.key) {
+            keys.push(&level_box.key);
+        }
+    }
+    keys
+}
+
+/// Plans `facts` from `passes` (usually [`passes::ALL`]).
+pub fn plan(passes: &[&PassDesc], facts: &SceneFacts, cached: &dyn Cached) -> Result<Plan, PlanError> {
+    let mut awaiting = awaited(facts);
+    let missing = level_maps(facts).iter().filter(|key| !cached.has_level_map(key)).count();
+    let mut kept: Vec<(&PassDesc, String)> = Vec::new();
+    let mut absent = Vec::new();
+    for pass in passes.iter().rev() {
+        let verdict = verdict(pass, facts, &awaiting, missing);
+        match verdict {
+            Ok(reason) => {
+                awaiting.extend(pass.reads.iter().chain(pass.reads_if_present));
+                kept.push((pass, reason));
+            }
+            Err(reason) => absent.push(AbsentPass { name: pass.name.to_owned(), reason }),
+        }
+    }
+    kept.reverse();
+    absent.reverse();
+    absent.extend(absent_effects(facts));
+    check_order(&kept, missing == 0)?;
+    let slots = slots(facts, &kept, cached);
+    Ok(Plan {
+        passes: kept
+            .iter()
+            .map(|(pass, reason)| PlannedPass {
+                name: pass.name.to_owned(),
+                reason: reason.clone(),
+                runs: runs(pass.repeat, facts, missing),
+            })
+            .collect(),
+        absent,
+        peak_bytes: slots.iter().map(|slot| slot.bytes).sum(),
+        slots,
+        warnings: facts.warnings.clone(),
+    })
+}
+
+fn verdict(
+    pass: &PassDesc,
+    facts: &SceneFacts,
+    awaiting: &BTreeSet<Slot>,
+    missing: usize,
+) -> Result<String, String> {
+    let reason = (pass.wanted)(facts)?;
+    if pass.repeat == Repeat::LevelMap && missing == 0 {
+        return Err("every level map it would build is cached".to_owned());
+    }
+    if pass.writes.iter().any(|slot| awaiting.contains(slot)) {
+        return Ok(reason);
+    }
+    let writes: Vec<&str> = pass.writes.iter().map(|slot| slot.info().name).collect();
+    Err(format!("nothing in this frame reads what it writes ({})", writes.join(", ")))
+}
+
+/// Work inside passes that a scene does not call for.
+fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
+    let mut absent = Vec::new();
+    let mut add = |name: &str, reason: &str| {
+        absent.push(AbsentPass { name: name.to_owned(), reason: reason.to_owned() });
+    };
+    if !facts.attenuates() {
+        add("attenuation", "water.absorption_per_m and water.scattering_per_m are zero");
+    }
+    if facts.channels() == 1 {
+        add("spectral_flux", "all colour channels fade alike: one is carried for all");
+    }
+    if facts.sky_radiance.iter().all(|&l| l == 0.0) {
+        add("sky", "no sky shines");
+    } else if facts.camera.is_none() && facts.map_sky_w_m2.iter().all(|&e| e == 0.0) {
+        add("sky", "output.include_sky is false");
+    }
+    absent
+}
+
+fn runs(repeat: Repeat, facts: &SceneFacts, missing: usize) -> u32 {
+    match repeat {
+        Repeat::LevelMap => u32::try_from(missing).unwrap_or(u32::MAX),
+        Repeat::Sun => u32::try_from(facts.suns.len()).unwrap_or(u32::MAX),
+        Repeat::Band => facts.camera.map_or(0, |c| c.height.div_ceil(slot::band_rows(c.width, c.height))),
+    }
+}
+
+/// Every slot that is read must be an upload, cached, or written before.
+fn check_order(kept: &[(&PassDesc, String)], level_maps_cached: bool) -> Result<(), PlanError> {
+    let mut there: BTreeSet<Slot> =
+        slot::SLOTS.into_iter().filter(|s| s.info().lifetime == slot::Lifetime::Upload).collect();
+    if level_maps_cached {
+        there.insert(Slot::LevelMaps);
+    }
+    for (pass, _) in kept {
+        if let Some(missing) = pass.reads.iter().find(|slot| !there.contains(slot)) {
+            return Err(PlanError::NothingWrites { pass: pass.name, slot: missing.info().name });
+        }
+        there.extend(pass.writes);
+    }
+    Ok(())
+}
+
+fn slots(facts: &SceneFacts, kept: &[(&PassDesc, String)], cached: &dyn Cached) -> Vec<PlannedSlot> {
+    let used: BTreeSet<Slot> = kept
+        .iter()
+        .flat_map(|(pass, _)| pass.reads.iter().chain(pass.writes).chain(pass.reads_if_present))
+        .copied()
+        .collect();
+    let wanted: u64 = level_maps(facts).iter().map(|key| key.bytes()).sum();
+    used.into_iter()
+        .map(|slot| {
+            let info = slot.info();
+            let bytes = match slot {
+                Slot::LevelMaps => cached.arena_bytes(wanted),
+                _ => slot.bytes(facts),
+            };
+            PlannedSlot { name: info.name.to_owned(), bytes: bytes.max(16), holds: info.holds.to_owned() }
+        })
+        .collect()
+}
+
+/// Plans with the program's own passes.
+pub fn plan_scene(facts: &SceneFacts, cached: &dyn Cached) -> Result<Plan, PlanError> {
+    plan(&passes::ALL, facts, cached)
 }

@@ -98,6 +98,8 @@ pub struct SceneFacts {
     pub floor_map: Option<FloorMap>,
     /// The objects.
     pub objects: Vec<ObjectFacts>,
+    /// Bytes of hierarchies (32 a node) and triangles (64 each) of the distinct meshes.
+    pub geometry_bytes: u64,
     /// The camera of a view.
     pub camera: Option<CameraFacts>,
     /// Layers of a view; of an irradiance map only [`LayerName::Irradiance`].
@@ -143,6 +145,7 @@ impl SceneFacts {
             floor,
             floor_map: None,
             objects: resolved.placed_objects(origin_m, surface.max_height_m()),
+            geometry_bytes: geometry_bytes(resolved),
             camera: None,
             layers: vec![LayerName::Irradiance],
             map_receiver: None,
@@ -349,6 +352,15 @@ fn origin(resolved: &ResolvedScene) -> DVec3 {
         }),
     };
     DVec3::new(xz.x, scene.water.level_m, xz.y)
+}
+
+fn geometry_bytes(resolved: &ResolvedScene) -> u64 {
+    let distinct: std::collections::BTreeMap<&str, u64> = resolved
+        .meshes
+        .iter()
+        .map(|m| (m.id.as_str(), 32 * m.hierarchy.len() as u64 + 64 * m.triangles.len() as u64))
+        .collect();
+    distinct.values().sum()
 }
 
 fn air_suns(lights: &[Light]) -> Vec<(DVec3, [f64; 3])> {

@@ -1,1 +1,3 @@
-//! Tests (gpu).
+//! Tests that need an adapter (software Vulkan will do).
+
+mod smoke;

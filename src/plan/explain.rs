@@ -1,0 +1,42 @@
+//! A plan for people: one line per pass.
+
+use std::fmt;
+
+use super::Plan;
+
+/// Bytes in the largest unit that keeps them above one.
+pub fn human_bytes(bytes: u64) -> String {
+    const UNITS: [&str; 4] = ["B", "KiB", "MiB", "GiB"];
+    let mut value = bytes as f64;
+    let mut unit = 0;
+    while value >= 1024.0 && unit + 1 < UNITS.len() {
+        value /= 1024.0;
+        unit += 1;
+    }
+    if unit == 0 { format!("{bytes} B") } else { format!("{value:.1} {}", UNITS[unit]) }
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "passes")?;
+        for pass in &self.passes {
+            let times = if pass.runs == 1 { String::new() } else { format!(" × {}", pass.runs) };
+            writeln!(f, "  {}{times}: {}", pass.name, pass.reason)?;
+        }
+        if self.passes.is_empty() {
+            writeln!(f, "  none")?;
+        }
+        writeln!(f, "absent")?;
+        for pass in &self.absent {
+            writeln!(f, "  {}: {}", pass.name, pass.reason)?;
+        }
+        writeln!(f, "memory, {} at its peak", human_bytes(self.peak_bytes))?;
+        for slot in &self.slots {
+            writeln!(f, "  {}: {} ({})", slot.name, human_bytes(slot.bytes), slot.holds)?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "warning: {}: {}", warning.pointer.as_deref().unwrap_or(&warning.code), warning.message)?;
+        }
+        Ok(())
+    }
+}

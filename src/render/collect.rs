@@ -1,0 +1,254 @@
+//! From GPU buffers to layers and accounts.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::RenderError;
+use crate::frame::Layer;
+use crate::gpu::GpuError;
+use crate::passes::slot::{self, ENERGY_TERMS, Slot};
+use crate::passes::light;
+use crate::scene::facts::SceneFacts;
+use crate::scene::placement::LevelMapKey;
+use crate::scene::{LayerName, Receiver};
+use crate::stats::{EnergyAccount, Warning};
+
+/// Terms of the account, as in `shaders/shared/flux.wgsl` (a test compares the numbers).
+pub(super) mod term {
+    pub(crate) const EMITTED: usize = 0;
+    pub(crate) const REFLECTED: usize = 1;
+    pub(crate) const MISSED: usize = 2;
+    pub(crate) const EXTINGUISHED: usize = 3;
+    pub(crate) const LEFT: usize = 6;
+    pub(crate) const LANDED: usize = 9;
+    pub(crate) const OVERFLOWS: usize = 12;
+    pub(crate) const TORN: usize = 13;
+    pub(crate) const TORN_COUNT: usize = 14;
+}
+
+/// The accounts of all suns from their raw sums, and what is worth a warning.
+pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> Result<(Vec<EnergyAccount>, Vec<Warning>), GpuError> {
+    let mut accounts = Vec::new();
+    let mut warnings = Vec::new();
+    for (index, (sun, terms)) in facts.suns.iter().zip(raw.chunks_exact(ENERGY_TERMS as usize)).enumerate() {
+        if terms[term::OVERFLOWS] > 0 {
+            return Err(GpuError::Validation(format!(
+                "{} deposits of light {} were too large for the fixed point",
+                terms[term::OVERFLOWS],
+                sun.light
+            )));
+        }
+        let per_count = 1.0 / light::energy_scale(facts, index);
+        let grey = |t: usize| sun.irradiance_w_m2.map(|e| terms[t] as f64 * per_count * e);
+        let spectral = |t: usize| -> [f64; 3] {
+            std::array::from_fn(|c| {
+                let channel = if facts.channels() == 1 { 0 } else { c };
+                terms[t + channel] as f64 * per_count * sun.irradiance_w_m2[c]
+            })
+        };
+        let lost = spectral(term::EXTINGUISHED);
+        let absorbed_share: [f64; 3] = std::array::from_fn(|c| {
+            let extinction = facts.extinction_per_m[c];
+            if extinction > 0.0 { facts.absorption_per_m[c] / extinction } else { 1.0 }
+        });
+        let mut account = EnergyAccount {
+            light: sun.light,
+            emitted_w: grey(term::EMITTED),
+            landed_w: spectral(term::LANDED),
+            absorbed_w: std::array::from_fn(|c| lost[c] * absorbed_share[c]),
+            scattered_w: std::array::from_fn(|c| lost[c] * (1.0 - absorbed_share[c])),
+            reflected_w: grey(term::REFLECTED),
+            left_region_w: spectral(term::LEFT),
+            missed_w: grey(term::MISSED),
+            closure: 0.0,
+        };
+        account.closure = closure(&account);
+        if terms[term::TORN_COUNT] > 0 {
+            let mut warning = Warning::new(
+                "beams_torn",
+                format!(
+                    "{} beams of light {} still straddle receivers after quality.split_levels halvings; each corner took a third",
+                    terms[term::TORN_COUNT], sun.light
+                ),
+            );
+            warning.flux_w = Some(grey(term::TORN));
+            warnings.push(warning);
+        }
+        accounts.push(account);
+    }
+    Ok((accounts, warnings))
+}
+
+fn closure(account: &EnergyAccount) -> f64 {
+    (0..3)
+        .filter(|&c| account.emitted_w[c] > 0.0)
+        .map(|c| {
+            let accounted = account.landed_w[c]
+                + account.absorbed_w[c]
+                + account.scattered_w[c]
+                + account.reflected_w[c]
+                + account.left_region_w[c]
+                + account.missed_w[c];
+            ((account.emitted_w[c] - accounted) / account.emitted_w[c]).abs()
+        })
+        .fold(0.0, f64::max)
+}
+
+/// The layers of a view, filled band by band.
+pub(super) struct ViewLayers<'a> {
+    facts: &'a SceneFacts,
+    width: u32,
+    layers: BTreeMap<LayerName, Layer>,
+    outside_map: u64,
+}
+
+impl<'a> ViewLayers<'a> {
+    pub(super) fn new(facts: &'a SceneFacts, width: u32, height: u32) -> Self {
+        let pixels = width as usize * height as usize;
+        let layers = facts
+            .layers
+            .iter()
+            .map(|&name| {
+                let channels = match name {
+                    LayerName::Radiance => 4,
+                    LayerName::Depth => 1,
+                    _ => 3,
+                };
+                (name, Layer { channels, data: vec![0.0; pixels * channels] })
+            })
+            .collect();
+        Self { facts, width, layers, outside_map: 0 }
+    }
+
+    /// Copies a band of a slot into the layers that come from it.
+    pub(super) fn add_band(&mut self, source: Slot, first_row: u32, band: &[[f32; 4]]) {
+        let first = first_row as usize * self.width as usize;
+        let origin = self.facts.origin_m;
+        let fill = |layer: Option<&mut Layer>, values: &dyn Fn(&[f32; 4]) -> [f32; 4]| {
+            let Some(layer) = layer else { return };
+            let n = layer.channels;
+            let target = &mut layer.data[first * n..(first + band.len()) * n];
+            for (pixel, value) in target.chunks_exact_mut(n).zip(band) {
+                pixel.copy_from_slice(&values(value)[..n]);
+            }
+        };
+        match source {
+            Slot::Radiance => {
+                self.outside_map += band.iter().filter(|v| v[3] != 0.0).count() as u64;
+                fill(self.layers.get_mut(&LayerName::Radiance), &|v| [v[0], v[1], v[2], 1.0]);
+            }
+            Slot::VisibleNormal => {
+                fill(self.layers.get_mut(&LayerName::Depth), &|v| [v[3], 0.0, 0.0, 0.0]);
+                fill(self.layers.get_mut(&LayerName::Normal), &|v| *v);
+            }
+            Slot::VisiblePosition => {
+                fill(self.layers.get_mut(&LayerName::Position), &|v| {
+                    if v[3] < 0.0 {
+                        return [0.0; 4];
+                    }
+                    let world = DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2])) + origin;
+                    [world.x as f32, world.y as f32, world.z as f32, 0.0]
+                });
+            }
+            Slot::VisibleAlbedo => fill(self.layers.get_mut(&LayerName::Albedo), &|v| *v),
+            Slot::VisibleIrradiance => fill(self.layers.get_mut(&LayerName::Irradiance), &|v| *v),
+            _ => {}
+        }
+    }
+
+    /// All layers, checked to be finite.
+    pub(super) fn finish(self) -> Result<(BTreeMap<LayerName, Layer>, Vec<Warning>), RenderError> {
+        for (name, layer) in &self.layers {
+            check_finite(*name, layer, self.width)?;
+        }
+        let mut warnings = Vec::new();
+        if self.outside_map > 0 {
+            warnings.push(Warning::new(
+                "pixels_outside_map",
+                format!("{} pixels see the floor beside its irradiance map; they repeat its edge", self.outside_map),
+            ));
+        }
+        Ok((self.layers, warnings))
+    }
+}
+
+fn check_finite(name: LayerName, layer: &Layer, width: u32) -> Result<(), RenderError> {
+    match layer.data.iter().position(|v| !v.is_finite()) {
+        None => Ok(()),
+        Some(index) => {
+            let pixel = (index / layer.channels) as u32;
+            Err(RenderError::NotFinite {
+                layer: format!("{name:?}").to_lowercase(),
+                x: pixel % width,
+                y: pixel / width,
+            })
+        }
+    }
+}
+
+/// Which texels of the irradiance array make the requested map.
+pub(super) struct MapPlace {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) first_texel: u64,
+    /// The level map whose normals turn flux through the map's plane into irradiance on the surface.
+    pub(super) level_map: Option<LevelMapKey>,
+    axis_in_mesh: DVec3,
+}
+
+/// Where the requested map lies.
+pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
+    if let Some(Receiver::Object(index)) = facts.map_receiver {
+        let texels = facts.quality.level_map_texels;
+        let nth_wet = facts.wet_objects().position(|o| o == index as usize).unwrap_or(0) as u64;
+        let found = facts.suns.first().and_then(|sun| sun.boxes.get(index as usize)).and_then(Option::as_ref);
+        return MapPlace {
+            width: texels,
+            height: texels,
+            first_texel: u64::from(slot::floor_texels(facts)) + nth_wet * u64::from(slot::object_texels(facts)),
+            level_map: found.map(|b| b.key.clone()),
+            axis_in_mesh: found.map_or(DVec3::Y, |b| b.axis),
+        };
+    }
+    let (width, height) = facts.floor_map.map_or((0, 0), |map| (map.width, map.height));
+    MapPlace { width, height, first_texel: 0, level_map: None, axis_in_mesh: DVec3::Y }
+}
+
+/// The finished map: on an object the cosine between surface and map axis comes in, on the floor the sky if asked for.
+pub(super) fn finish_map(
+    facts: &SceneFacts,
+    map: &MapPlace,
+    mut values: Vec<f32>,
+    normals: Option<&[u32]>,
+) -> Result<Layer, RenderError> {
+    if let (Some(normals), Some(Receiver::Object(index))) = (normals, facts.map_receiver) {
+        let normal_to_local = facts.objects[index as usize].local_from_mesh.matrix3.inverse().transpose();
+        for (texel, &packed) in values.chunks_exact_mut(3).zip(normals) {
+            let n = (normal_to_local * unpack_normal(packed)).normalize();
+            let cosine = n.dot(map.axis_in_mesh).abs() as f32;
+            for value in texel {
+                *value *= cosine;
+            }
+        }
+    }
+    for texel in values.chunks_exact_mut(3) {
+        for (value, sky) in texel.iter_mut().zip(facts.map_sky_w_m2) {
+            *value += sky as f32;
+        }
+    }
+    let layer = Layer { channels: 3, data: values };
+    check_finite(LayerName::Irradiance, &layer, map.width)?;
+    Ok(layer)
+}
+
+/// Undoes the shaders' octahedral packing.
+fn unpack_normal(word: u32) -> DVec3 {
+    let half = |bits: u16| f64::from(bits as i16) / 32767.0;
+    let (x, y) = (half(word as u16), half((word >> 16) as u16));
+    let mut n = DVec3::new(x, y, 1.0 - x.abs() - y.abs());
+    let fold = (-n.z).max(0.0);
+    n.x -= fold.copysign(n.x);
+    n.y -= fold.copysign(n.y);
+    n.normalize()
+}

@@ -1,0 +1,127 @@
+//! Meshes on the GPU: hierarchies and triangles of all meshes of a scene, one behind the other.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::gpu::GpuContext;
+use crate::mesh::Mesh;
+use crate::passes::gpu_data::{Instance, vec4};
+use crate::scene::facts::SceneFacts;
+
+/// 16-byte units of a hierarchy node.
+const NODE_UNITS: u32 = 2;
+/// 16-byte units of a triangle.
+const TRIANGLE_UNITS: u32 = 4;
+
+/// Where a mesh lies in the buffer, in 16-byte units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) first_node: u32,
+    pub(super) nodes: u32,
+    pub(super) first_triangle: u32,
+    pub(super) triangles: u32,
+}
+
+/// The meshes of one scene on the GPU; kept for the next scene with the same meshes.
+#[derive(Debug)]
+pub(super) struct Geometry {
+    pub(super) buffer: wgpu::Buffer,
+    places: BTreeMap<String, Place>,
+}
+
+impl Geometry {
+    /// Uploads the distinct meshes, sorted by id.
+    pub(super) fn upload(gpu: &GpuContext, meshes: &[Arc<Mesh>]) -> Self {
+        let distinct: BTreeMap<&str, &Mesh> = meshes.iter().map(|m| (m.id.as_str(), m.as_ref())).collect();
+        let mut words: Vec<[u32; 4]> = Vec::new();
+        let mut places = BTreeMap::new();
+        for (id, mesh) in distinct {
+            let first_node = words.len() as u32;
+            for node in &mesh.hierarchy {
+                let corner = |c: [f32; 3], link| [c[0].to_bits(), c[1].to_bits(), c[2].to_bits(), link];
+                words.push(corner(node.min_m, node.entry));
+                words.push(corner(node.max_m, node.exit));
+            }
+            let first_triangle = words.len() as u32;
+            for triangle in &mesh.triangles {
+                for (p, n) in triangle.positions_m.iter().zip(triangle.normals) {
+                    words.push([p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), pack_normal(n)]);
+                }
+                let albedo = mesh.materials[triangle.material as usize].albedo.map(f32::to_bits);
+                words.push([albedo[0], albedo[1], albedo[2], 0]);
+            }
+            let place = Place {
+                first_node,
+                nodes: mesh.hierarchy.len() as u32,
+                first_triangle,
+                triangles: mesh.triangles.len() as u32,
+            };
+            places.insert(id.to_owned(), place);
+        }
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("geometry"),
+            size: 16 * words.len().max(1) as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
+        Self { buffer, places }
+    }
+
+    /// Whether all these meshes, and no others, are here.
+    pub(super) fn holds(&self, meshes: &[Arc<Mesh>]) -> bool {
+        meshes.iter().all(|m| self.places.contains_key(&m.id))
+            && self.places.keys().all(|id| meshes.iter().any(|m| &m.id == id))
+    }
+
+    /// Where a mesh lies.
+    pub(super) fn place(&self, id: &str) -> Place {
+        self.places[id]
+    }
+
+    /// Size on the GPU.
+    pub(super) fn bytes(&self) -> u64 {
+        self.buffer.size()
+    }
+
+    /// The scene's objects as instances.
+    pub(super) fn instances(&self, facts: &SceneFacts) -> Vec<Instance> {
+        facts
+            .objects
+            .iter()
+            .map(|object| {
+                let inverse = object.local_from_mesh.inverse();
+                let place = self.place(&object.mesh);
+                let row = |i: usize| vec4(inverse.matrix3.row(i), inverse.translation[i]);
+                // Boxes grow by a rounding error of f32, so that a flat mesh is not missed.
+                let grow = glam::DVec3::splat(1e-6 * object.min.abs().max(object.max.abs()).max_element());
+                Instance {
+                    mesh_x: row(0),
+                    mesh_y: row(1),
+                    mesh_z: row(2),
+                    albedo: object.albedo.map_or([0.0; 4], |a| vec4(a, 1.0)),
+                    min_m: vec4(object.min - grow, 0.0),
+                    max_m: vec4(object.max + grow, 0.0),
+                    first_node: place.first_node,
+                    node_count: place.nodes,
+                    first_triangle: place.first_triangle,
+                    pad: 0,
+                }
+            })
+            .collect()
+    }
+}
+
+/// Octahedral normal in two signed 16-bit halves; the shaders' `unpack_normal` undoes it.
+fn pack_normal(n: Vec3) -> u32 {
+    let m = n / (n.x.abs() + n.y.abs() + n.z.abs());
+    let (mut x, mut y) = (m.x, m.y);
+    if m.z < 0.0 {
+        let sign = |v: f32| if v >= 0.0 { 1.0 } else { -1.0 };
+        (x, y) = ((1.0 - m.y.abs()) * sign(m.x), (1.0 - m.x.abs()) * sign(m.y));
+    }
+    let half = |v: f32| u32::from((v.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
+    half(x) | (half(y) << 16)
+}

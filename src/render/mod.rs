@@ -1,0 +1,304 @@
+//! Scene + Plan → Frame: owns the GPU context and the caches, and runs what the planner lists.
+
+mod collect;
+mod executor;
+mod geometry;
+mod self_check;
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use tokio_util::sync::CancellationToken;
+
+use crate::config::RenderConfig;
+use crate::frame::Frame;
+use crate::gpu::shader::ShaderSources;
+use crate::gpu::timing::Timing;
+use crate::gpu::{BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
+use crate::level_map::LevelMapCache;
+use crate::passes::{Slot, shaders};
+use crate::plan::{self, Cached, Plan};
+use crate::scene::facts::SceneFacts;
+use crate::scene::placement::LevelMapKey;
+use crate::scene::{ResolvedScene, SceneError};
+use crate::stats::{
+    AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats, TimeStats, Warning,
+};
+
+pub use self_check::{SelfCheck, SelfCheckItem};
+
+/// Why there is no frame.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RenderError {
+    /// The scene cannot be rendered as it is.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The plan needs more memory than allowed.
+    #[error("{what} needs {needed_bytes} bytes of GPU memory, {budget_bytes} are allowed")]
+    OverBudget {
+        /// The frame, or the one buffer that is too large for the device.
+        what: String,
+        /// Planned bytes.
+        needed_bytes: u64,
+        /// The limit.
+        budget_bytes: u64,
+    },
+    /// A result is not a number.
+    #[error("layer {layer} is not finite at ({x}, {y})")]
+    NotFinite {
+        /// The layer.
+        layer: String,
+        /// Column.
+        x: u32,
+        /// Row.
+        y: u32,
+    },
+    /// The GPU failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// Nobody waits for the frame any more.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<plan::PlanError> for RenderError {
+    fn from(error: plan::PlanError) -> Self {
+        Self::Gpu(GpuError::Validation(error.to_string()))
+    }
+}
+
+/// Shader path, entry point, whether it attenuates.
+type KernelKey = (&'static str, &'static str, bool);
+
+/// Owns the GPU context and the caches; lives on the GPU thread.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: GpuContext,
+    sources: ShaderSources,
+    pool: BufferPool,
+    timing: Timing,
+    kernels: BTreeMap<KernelKey, Kernel>,
+    raster_kernels: BTreeMap<bool, RasterKernel>,
+    level_maps: LevelMapCache,
+    arena: Option<wgpu::Buffer>,
+    geometry: Option<geometry::Geometry>,
+    memory_budget_bytes: u64,
+}
+
+impl Renderer {
+    /// Opens an adapter by the policy.
+    ///
+    /// # Errors
+    /// When no adapter fits, or the device cannot be opened.
+    pub fn new(config: &RenderConfig) -> Result<Self, GpuError> {
+        Self::with_shaders(config, shaders::embedded())
+    }
+
+    /// The same with shader sources of one's own: for tests that break a formula on purpose.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_shaders(config: &RenderConfig, sources: ShaderSources) -> Result<Self, GpuError> {
+        let gpu = GpuContext::open(config.adapter)?;
+        if let Some(folder) = &config.shader_dump {
+            dump_shaders(&sources, folder)?;
+        }
+        let arena_bytes = (config.level_map_budget_mib << 20).min(gpu.limits.max_storage_buffer_binding_size);
+        Ok(Self {
+            timing: Timing::new(&gpu),
+            gpu,
+            sources,
+            pool: BufferPool::default(),
+            kernels: BTreeMap::new(),
+            raster_kernels: BTreeMap::new(),
+            level_maps: LevelMapCache::new(arena_bytes),
+            arena: None,
+            geometry: None,
+            memory_budget_bytes: config.memory_budget_mib << 20,
+        })
+    }
+
+    /// Where it runs.
+    pub fn adapter(&self) -> AdapterStats {
+        self.gpu.adapter().clone()
+    }
+
+    /// The device context, for tests.
+    pub fn gpu(&self) -> &GpuContext {
+        &self.gpu
+    }
+
+    /// What would run, given what is cached now.
+    ///
+    /// # Errors
+    /// When the scene cannot be rendered.
+    pub fn plan(&self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
+        let facts = SceneFacts::of(resolved)?;
+        Ok(plan::plan_scene(&facts, self)?)
+    }
+
+    /// Renders; `cancel` is looked at between submissions.
+    ///
+    /// # Errors
+    /// When the scene cannot be rendered within the budget, the GPU fails, or the job is cancelled.
+    pub fn render(&mut self, resolved: &ResolvedScene, cancel: &CancellationToken) -> Result<Frame, RenderError> {
+        let started = Instant::now();
+        self.gpu.check()?;
+        let facts = SceneFacts::of(resolved)?;
+        let plan = plan::plan_scene(&facts, self)?;
+        self.check_budget(&plan)?;
+        let cache_before = self.level_maps.stats();
+        let missing = self
+            .level_maps
+            .reserve(&plan::level_maps(&facts))
+            .map_err(|e| RenderError::OverBudget {
+                what: "the scene's level maps (CAUSTICA_LEVEL_MAP_BUDGET_MIB)".to_owned(),
+                needed_bytes: e.needed_bytes,
+                budget_bytes: e.budget_bytes,
+            })?;
+        let plan_ms = ms_since(started);
+        self.pool.begin_frame();
+        self.timing.begin_frame();
+        let result = self.execute(resolved, &facts, &plan, &missing, cancel);
+        let run = match result {
+            Ok(run) => run,
+            Err(error) => {
+                self.level_maps.forget(&missing);
+                return Err(error);
+            }
+        };
+        let gpu_times = self.timing.collect(&self.gpu, run.time_ms.gpu)?;
+        let mut stats = Stats {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            scene_hash: resolved.hash(),
+            adapter: self.adapter(),
+            passes: plan
+                .passes
+                .iter()
+                .map(|p| PassStats {
+                    name: p.name.clone(),
+                    reason: p.reason.clone(),
+                    runs: p.runs,
+                    gpu_ms: gpu_times.iter().find(|(name, _)| *name == p.name).map(|&(_, ms)| ms),
+                })
+                .collect(),
+            absent: plan.absent,
+            time_ms: TimeStats { plan: plan_ms, ..run.time_ms },
+            memory: MemoryStats {
+                planned_peak_bytes: plan.peak_bytes,
+                peak_bytes: run.peak_bytes,
+                budget_bytes: self.memory_budget_bytes,
+                level_maps: cache_change(&cache_before, &self.level_maps.stats()),
+            },
+            energy: run.energy,
+            exposure: exposure(&facts, resolved),
+            warnings: plan.warnings,
+        };
+        stats.warnings.extend(run.warnings);
+        stats.time_ms.total = ms_since(started);
+        Ok(Frame { width: run.width, height: run.height, layers: run.layers, stats })
+    }
+
+    /// Frees what is cached for a mesh.
+    pub fn forget_mesh(&mut self, id: &str) {
+        self.level_maps.forget_mesh(id);
+        self.geometry = None;
+    }
+
+    /// The level-map cache since the start (hits, misses, evictions) and now (entries, bytes).
+    pub fn level_map_cache(&self) -> CacheStats {
+        self.level_maps.stats()
+    }
+
+    /// Bytes held on the GPU between frames: free pooled buffers, level maps, geometry.
+    pub fn resident_bytes(&self) -> u64 {
+        self.pool.free_bytes()
+            + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
+            + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes)
+    }
+
+    /// To be called now and then when there is nothing to do: lets the driver free what is no longer used.
+    pub fn idle(&mut self) {
+        self.gpu.tidy();
+    }
+
+    fn check_budget(&self, plan: &Plan) -> Result<(), RenderError> {
+        if plan.peak_bytes > self.memory_budget_bytes {
+            return Err(RenderError::OverBudget {
+                what: "the frame at its peak (CAUSTICA_MEMORY_BUDGET_MIB)".to_owned(),
+                needed_bytes: plan.peak_bytes,
+                budget_bytes: self.memory_budget_bytes,
+            });
+        }
+        let limit = self.gpu.limits.max_storage_buffer_binding_size.min(self.gpu.limits.max_buffer_size);
+        for slot in &plan.slots {
+            if slot.bytes > limit {
+                return Err(RenderError::OverBudget {
+                    what: format!("buffer `{}` (the device's limit for one binding)", slot.name),
+                    needed_bytes: slot.bytes,
+                    budget_bytes: limit,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Cached for Renderer {
+    fn has_level_map(&self, key: &LevelMapKey) -> bool {
+        self.level_maps.contains(key)
+    }
+
+    fn arena_bytes(&self, wanted_bytes: u64) -> u64 {
+        if wanted_bytes == 0 && self.arena.is_none() { 0 } else { self.level_maps.stats().budget_bytes }
+    }
+}
+
+/// What running a plan gave.
+#[derive(Debug)]
+struct RunResult {
+    width: u32,
+    height: u32,
+    layers: BTreeMap<crate::scene::LayerName, crate::frame::Layer>,
+    energy: Vec<crate::stats::EnergyAccount>,
+    warnings: Vec<Warning>,
+    time_ms: TimeStats,
+    peak_bytes: u64,
+}
+
+fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+fn cache_change(before: &CacheStats, after: &CacheStats) -> CacheStats {
+    CacheStats {
+        hits: after.hits - before.hits,
+        misses: after.misses - before.misses,
+        evictions: after.evictions - before.evictions,
+        ..after.clone()
+    }
+}
+
+fn exposure(facts: &SceneFacts, resolved: &ResolvedScene) -> ExposureStats {
+    let ev = resolved.scene.output.encoding().exposure_ev;
+    let scale = if facts.white_radiance > 0.0 { ev.exp2() / facts.white_radiance } else { 0.0 };
+    ExposureStats { white_radiance: facts.white_radiance, ev, scale }
+}
+
+fn dump_shaders(sources: &ShaderSources, folder: &std::path::Path) -> Result<(), GpuError> {
+    for path in sources.paths().filter(|path| path.starts_with("passes/")) {
+        let target = folder.join(path.trim_start_matches("passes/"));
+        std::fs::create_dir_all(folder)
+            .and_then(|()| std::fs::write(&target, sources.assemble(path).unwrap_or_default()))
+            .map_err(|error| GpuError::Shader {
+                shader: path.to_owned(),
+                message: format!("cannot be dumped to {}: {error}", target.display()),
+            })?;
+    }
+    Ok(())
+}
+
+/// The name under which a slot is bound and held.
+fn slot_name(slot: Slot) -> &'static str {
+    slot.info().name
+}
