@@ -1,4 +1,4 @@
-//! Meshes: OBJ and MTL in (`obj`, with `scan` and `mtl` that check the texts first), what was mended (`repair`), why one was
+//! Meshes: OBJ and MTL in (`obj`, with `scan`, `mtl` and `text` that check the texts first), what was mended (`repair`), why one was
 //! refused (`error`), a ray hierarchy over the triangles (`hierarchy`), the store (`store`) and what it tells (`info`).
 
 mod error;
@@ -9,6 +9,7 @@ pub mod obj;
 mod repair;
 mod scan;
 pub mod store;
+mod text;
 
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};

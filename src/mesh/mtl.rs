@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use super::scan::{name, shorten, words};
+use super::text::{name, shorten, words};
 use super::{Material, MeshError};
 use crate::stats::Warning;
 

@@ -10,15 +10,11 @@ use std::fmt::Write as _;
 use glam::DVec3;
 
 use super::MeshError;
+use super::text::{OBJ, corner_syntax, name, number, shorten, syntax, words};
 use crate::stats::Warning;
 
 /// Largest coordinate magnitude, m; beyond it f32 steps are wider than 50 m even around the mesh's own middle.
 pub const MAX_COORDINATE_M: f64 = 1e9;
-
-/// Longest name of a material or library, bytes; the reader copies names, once per change of material.
-const MAX_NAME_BYTES: usize = 255;
-
-const OBJ: &str = "OBJ";
 
 /// What the first reading found.
 #[derive(Debug, Default)]
@@ -375,109 +371,32 @@ impl Scanner {
     }
 
     fn warnings(&self) -> Vec<Warning> {
-        let mut warnings = Vec::new();
-        let mut warn = |count: usize, code: &str, sentence: String| {
-            if count > 0 {
-                warnings.push(Warning::new(code, sentence));
-            }
-        };
-        warn(
-            self.small_faces,
-            "mesh_small_faces",
-            format!(
-                "{} faces with fewer than three corners were left out.",
-                self.small_faces
-            ),
+        let (line, keyword) = self.first_ignored.clone().unwrap_or_default();
+        let ignored = format!(
+            "lines are not used, the first is line {line} (`{keyword}`); only v, vn, f, usemtl and mtllib are."
         );
-        warn(
-            self.concave_faces,
-            "mesh_concave_polygons",
-            format!(
-                "{} polygons are concave or twisted; they were cut into a fan around their first corner, which covers \
+        [
+            (
+                self.small_faces,
+                "mesh_small_faces",
+                "faces with fewer than three corners were left out.",
+            ),
+            (
+                self.concave_faces,
+                "mesh_concave_polygons",
+                "polygons are concave or twisted; they were cut into a fan around their first corner, which covers \
                  another area. Triangulate the mesh before sending it.",
-                self.concave_faces
             ),
-        );
-        warn(
-            self.bad_normals,
-            "mesh_bad_normals",
-            format!(
-                "{} normals are zero or not finite; face normals stand in for them.",
-                self.bad_normals
+            (
+                self.bad_normals,
+                "mesh_bad_normals",
+                "normals are zero or not finite; face normals stand in for them.",
             ),
-        );
-        if let Some((line, keyword)) = &self.first_ignored {
-            warn(
-                self.ignored,
-                "mesh_ignored_lines",
-                format!(
-                    "{} lines are not used, the first is line {line} (`{keyword}`); only v, vn, f, usemtl and mtllib are.",
-                    self.ignored
-                ),
-            );
-        }
-        warnings
+            (self.ignored, "mesh_ignored_lines", &ignored),
+        ]
+        .into_iter()
+        .filter(|(count, ..)| *count > 0)
+        .map(|(count, code, sentence)| Warning::new(code, format!("{count} {sentence}")))
+        .collect()
     }
-}
-
-/// Words of a line up to a trailing comment.
-pub(super) fn words(rest: &str) -> impl Iterator<Item = &str> {
-    rest.split_whitespace()
-        .take_while(|word| !word.starts_with('#'))
-}
-
-/// The name after a keyword: the rest of the line, which may hold spaces.
-pub(super) fn name<'a>(
-    file: &'static str,
-    line: usize,
-    keyword: &str,
-    rest: &'a str,
-) -> Result<&'a str, MeshError> {
-    let name = rest.trim();
-    if name.is_empty() || name.len() > MAX_NAME_BYTES {
-        return Err(MeshError::Syntax {
-            file,
-            line,
-            message: format!(
-                "`{keyword}` has a name of {} bytes; expected 1 … {MAX_NAME_BYTES} bytes",
-                name.len()
-            ),
-        });
-    }
-    Ok(name)
-}
-
-fn number(line: usize, word: &str) -> Result<f64, MeshError> {
-    word.parse().map_err(|_| {
-        syntax(
-            line,
-            format!(
-                "`{}` is not a number; expected a decimal number such as -1.25 or 3e-2",
-                shorten(word)
-            ),
-        )
-    })
-}
-
-fn syntax(line: usize, message: String) -> MeshError {
-    MeshError::Syntax {
-        file: OBJ,
-        line,
-        message,
-    }
-}
-
-fn corner_syntax(line: usize, word: &str) -> MeshError {
-    syntax(
-        line,
-        format!(
-            "`{}` is not a face corner; expected whole numbers as in `7`, `7/1`, `7//3` or `7/1/3`",
-            shorten(word)
-        ),
-    )
-}
-
-/// At most 40 characters of what the client wrote, for messages.
-pub(super) fn shorten(word: &str) -> String {
-    word.chars().take(40).collect()
 }

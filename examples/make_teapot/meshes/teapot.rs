@@ -107,14 +107,15 @@ fn evaluate(patch: &Patch, u: f64, v: f64) -> (DVec3, DVec3) {
     let position = blend(rows(bernstein(v)), bernstein(u));
     let along_u = |v: f64| blend(rows(bernstein(v)), bernstein_slope(u));
     let along_v = blend(rows(bernstein_slope(v)), bernstein(u));
-    let normal = along_u(v).cross(along_v).try_normalize().or_else(|| {
-        // At a pole a whole side of the patch is one point: the directions in which its ends leave span the plane there.
-        along_u(0.0).cross(along_u(1.0)).try_normalize()
-    });
-    (
-        position,
-        normal.expect("a patch has a tangent plane everywhere"),
-    )
+    let normal = along_u(v).cross(along_v);
+    // At a pole a whole side of the patch is one point, and ∂v is rounding noise: the directions in which the ends of that
+    // side leave it span the plane there.
+    let normal = if normal.length() > 1e-9 {
+        normal
+    } else {
+        along_u(0.0).cross(along_u(1.0))
+    };
+    (position, normal.normalize())
 }
 
 fn bernstein(t: f64) -> [f64; 4] {
