@@ -11,8 +11,12 @@ use super::Triangle;
 /// Marks a leaf in [`HierarchyNode::entry`]; the other bits are then the triangle's index.
 pub const LEAF: u32 = 0x8000_0000;
 
+/// Relative margin for a handful of f32 roundings of 2⁻²⁴ each.
+const ROUNDING: f32 = 8.0 * f32::EPSILON;
+
 /// A node in depth-first order. A ray that meets the box goes on at `entry`, any other at `exit`; a leaf (`entry & LEAF`) is
-/// tested against its triangle and always goes on at `exit`. `exit` = number of nodes ends the walk.
+/// tested against its triangle and always goes on at `exit`. `exit` = number of nodes ends the walk. Leaves have boxes as
+/// well, and it pays to test them.
 ///
 /// The first node is the root, of n triangles come 2 n − 1 nodes, `entry` of an inner node is the next node, and `exit` is
 /// always beyond the node itself, so that every walk ends.
@@ -42,9 +46,15 @@ pub struct TriangleHit {
     pub v: f32,
 }
 
-/// Builds the hierarchy; boxes hold their triangles with outward rounding. Empty for no triangles.
+/// Builds the hierarchy; boxes hold their triangles with a margin of 10⁻⁶ of the mesh's size. Empty for no triangles.
 pub fn build(triangles: &[Triangle]) -> Vec<HierarchyNode> {
-    let mut shapes: Vec<Shape> = triangles.iter().map(Shape::of).collect();
+    let largest_m = triangles
+        .iter()
+        .flat_map(|t| t.positions_m)
+        .fold(0.0, |largest: f32, p| largest.max(p.abs().max_element()));
+    // The triangle test rounds corners by about 2⁻²⁴ of their distance: what it counts as hit may lie this far outside.
+    let margin_m = ROUNDING * largest_m;
+    let mut shapes: Vec<Shape> = triangles.iter().map(|t| Shape::of(t, margin_m)).collect();
     let tree: Bvh<f32, 3> = BoundingHierarchy::build_par(&mut shapes);
     let Some(root) = bounds(&shapes) else {
         return Vec::new();
@@ -119,6 +129,8 @@ pub struct Ray {
     across: [Vec3; 2],
     /// 1 / direction, finite.
     inverse: Vec3,
+    /// What rounding takes from corners far from the origin, given back to the boxes.
+    margin: f32,
 }
 
 impl Ray {
@@ -145,25 +157,25 @@ impl Ray {
                 finite(direction.y),
                 finite(direction.z),
             ),
+            margin: ROUNDING * origin.abs().max_element(),
         }
     }
 
     /// Whether the ray passes the node's box between `t_min` and `t_max`; never misses what the box holds.
     pub fn meets_box(&self, node: &HierarchyNode, t_min: f32, t_max: f32) -> bool {
-        // Six roundings at most, 2⁻²⁴ each, in the two ends of a slab.
-        const WIDEN: f32 = 8.0 * f32::EPSILON;
-        let to_min = (Vec3::from_array(node.min_m) - self.origin) * self.inverse;
-        let to_max = (Vec3::from_array(node.max_m) - self.origin) * self.inverse;
+        let to_min = (Vec3::from_array(node.min_m) - (self.origin + self.margin)) * self.inverse;
+        let to_max = (Vec3::from_array(node.max_m) - (self.origin - self.margin)) * self.inverse;
         let near = to_min.min(to_max).max_element();
         let far = to_min.max(to_max).min_element();
-        near.max(t_min) <= (far + WIDEN * far.abs()).min(t_max)
+        near.max(t_min) <= (far + ROUNDING * far.abs()).min(t_max)
     }
 
     /// Where the ray's line meets a triangle, from either side: (t, u, v).
     ///
     /// Corners are projected onto the plane across the ray (after Woop, Benthin and Wald, "Watertight Ray/Triangle
     /// Intersection", JCGT 2(1), 2013): a corner's projection is the same for all triangles that share it, so a ray
-    /// cannot slip between neighbours, however thin, and no threshold is needed.
+    /// cannot slip between neighbours, however thin, and no threshold is needed. A triangle of less than 10⁻⁶ of its
+    /// distance is all rounding; whoever asks has to ask [`Ray::meets_box`] for its leaf first.
     pub fn hit_triangle(&self, corners: &[Vec3; 3]) -> Option<(f32, f32, f32)> {
         let relative = corners.map(|p| p - self.origin);
         let [a, b, c] = relative.map(|p| (p.dot(self.across[0]), p.dot(self.across[1])));
@@ -179,7 +191,7 @@ impl Ray {
         }
         let (u, v) = (weight_b / whole, weight_c / whole);
         let [t_a, t_b, t_c] = relative.map(|p| p.dot(self.along));
-        let t = (weight_a / whole) * t_a + u * t_b + v * t_c;
+        let t = t_a + u * (t_b - t_a) + v * (t_c - t_a);
         Some((t, u, v))
     }
 }
@@ -192,24 +204,15 @@ struct Shape {
 }
 
 impl Shape {
-    fn of(triangle: &Triangle) -> Self {
+    fn of(triangle: &Triangle, margin_m: f32) -> Self {
         let [a, b, c] = triangle.positions_m;
-        let (min, max) = (a.min(b).min(c), a.max(b).max(c));
-        // A step outward, so that a triangle along an axis has a box that is not flat: on a flat box's own plane the
-        // slab test would multiply zero.
+        let min = a.min(b).min(c) - margin_m;
+        let max = a.max(b).max(c) + margin_m;
         Self {
-            aabb: Aabb::with_bounds(
-                min.to_array().map(|x| outward(x, -1.0)).into(),
-                max.to_array().map(|x| outward(x, 1.0)).into(),
-            ),
+            aabb: Aabb::with_bounds(min.to_array().into(), max.to_array().into()),
             node: 0,
         }
     }
-}
-
-/// A few steps beyond `x`, and never by less than what a GPU that flushes tiny numbers to zero can see.
-fn outward(x: f32, sign: f32) -> f32 {
-    x + sign * (4.0 * f32::EPSILON * x.abs()).max(1e-30)
 }
 
 impl Bounded<f32, 3> for Shape {

@@ -54,13 +54,17 @@ pub(super) fn scan(text: &str) -> Result<MtlScan, MeshError> {
             _ => {}
         }
     }
-    for (count, what) in [
-        (textures, "textures (map_Kd)"),
-        (spectra, "spectral colours (Kd spectral, Kd xyz)"),
+    for (count, code, what) in [
+        (textures, "mesh_textures_ignored", "textures (`map_Kd`)"),
+        (
+            spectra,
+            "mesh_spectra_ignored",
+            "spectral colours (`Kd spectral`, `Kd xyz`)",
+        ),
     ] {
         if count > 0 {
             scan.warnings.push(Warning::new(
-                "mesh_material_features_ignored",
+                code,
                 format!("{count} {what} of the MTL are not used; only `Kd r g b` is."),
             ));
         }
