@@ -1,4 +1,5 @@
 //! Tests (cpu).
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod mesh_hierarchy;
 mod mesh_obj;

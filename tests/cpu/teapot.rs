@@ -3,7 +3,7 @@
 #[path = "../../examples/make_teapot/meshes/mod.rs"]
 mod meshes;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use caustica::config::Limits;
 use caustica::mesh::{Mesh, hierarchy, obj};
@@ -28,7 +28,7 @@ fn parts(mesh: &Mesh) -> Vec<(Vec<[Vec3; 3]>, usize)> {
             .entry(p.to_array().map(f32::to_bits))
             .or_insert(next)
     };
-    let mut triangles_at: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
+    let mut triangles_at: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     for (index, triangle) in mesh.triangles.iter().enumerate() {
         let corners = triangle.positions_m.map(&mut number);
         for k in 0..3 {
