@@ -1,0 +1,576 @@
+//! OBJ and MTL in: what is read, what is mended and said, what is refused and how.
+
+use caustica::config::Limits;
+use caustica::mesh::{DEFAULT_ALBEDO, Mesh, MeshError, obj};
+use glam::{DVec3, Vec3};
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
+fn read(text: &str) -> Result<Mesh, MeshError> {
+    obj::read(text.as_bytes(), None, &Limits::default())
+}
+
+fn read_with(text: &str, mtl: &str) -> Result<Mesh, MeshError> {
+    obj::read(text.as_bytes(), Some(mtl.as_bytes()), &Limits::default())
+}
+
+fn good(text: &str) -> Mesh {
+    read(text).expect("a valid mesh")
+}
+
+fn codes(mesh: &Mesh) -> Vec<&str> {
+    mesh.warnings.iter().map(|w| w.code.as_str()).collect()
+}
+
+#[track_caller]
+fn warned(mesh: &Mesh, code: &str, needle: &str) {
+    let warning = mesh.warnings.iter().find(|w| w.code == code);
+    let warning = warning.unwrap_or_else(|| panic!("no {code} in {:?}", mesh.warnings));
+    assert!(warning.message.contains(needle), "{}", warning.message);
+}
+
+#[track_caller]
+fn refused(text: &str, needles: &[&str]) -> MeshError {
+    let error = read(text).expect_err("a broken mesh");
+    let message = error.to_string();
+    for needle in needles {
+        assert!(message.contains(needle), "`{needle}` not in: {message}");
+    }
+    error
+}
+
+#[test]
+fn a_triangle_is_moved_to_its_middle() {
+    let mesh = good(TRIANGLE);
+    assert_eq!(mesh.origin_m, DVec3::new(0.5, 0.5, 0.0));
+    assert_eq!(
+        mesh.triangles[0].positions_m,
+        [
+            Vec3::new(-0.5, -0.5, 0.0),
+            Vec3::new(0.5, -0.5, 0.0),
+            Vec3::new(-0.5, 0.5, 0.0)
+        ]
+    );
+    assert_eq!(mesh.triangles[0].normals, [Vec3::Z; 3]);
+    assert_eq!(mesh.min_m, Vec3::new(-0.5, -0.5, 0.0));
+    assert_eq!(mesh.max_m, Vec3::new(0.5, 0.5, 0.0));
+    assert_eq!(mesh.materials.len(), 1);
+    assert_eq!(mesh.materials[0].albedo, [DEFAULT_ALBEDO; 3]);
+    assert_eq!(mesh.hierarchy.len(), 1);
+    assert_eq!(codes(&mesh), ["mesh_open"]);
+    warned(&mesh, "mesh_open", "3 edges");
+}
+
+#[test]
+fn a_closed_mesh_has_nothing_to_say() {
+    let mesh = good(TETRAHEDRON);
+    assert_eq!(mesh.triangles.len(), 4);
+    assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+}
+
+#[test]
+fn detail_far_from_the_origin_survives() {
+    let far = good(
+        "v 1000000.01 2e6 -3e6\nv 1000000.02 2e6 -3e6\nv 1000000.01 2000000.01 -3e6\nf 1 2 3\n",
+    );
+    let [a, b, c] = far.triangles[0].positions_m;
+    assert!((b.x - a.x - 0.01).abs() < 1e-8, "{}", b.x - a.x);
+    assert!((c.y - a.y - 0.01).abs() < 1e-8, "{}", c.y - a.y);
+    let info = far.info();
+    assert!((info.bounds_m.min[0] - 1_000_000.01).abs() < 1e-8);
+    assert!((info.bounds_m.max[1] - 2_000_000.01).abs() < 1e-8);
+}
+
+#[test]
+fn unused_vertices_and_flat_slivers_leave_the_origin_alone() {
+    let mesh = good(&format!(
+        "{TRIANGLE}v 1000 0 0\nv 2000 0 0\nv 9 9 9\nf 1 4 5\n"
+    ));
+    assert_eq!(mesh.origin_m, DVec3::new(0.5, 0.5, 0.0));
+    warned(&mesh, "mesh_degenerate_triangles", "1 triangles");
+}
+
+#[test]
+fn spellings_of_the_same_mesh_agree() {
+    let plain = good(TRIANGLE);
+    for text in [
+        "\u{feff}v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1",
+        "v 0 0 0 # corner\n  v 1 0 0\n\tv\t0 1 0\n\n# f 1 1 1 \\\nf 1 \\\n 2 \\\n3 # face\n",
+        "v 0 0 0 1\nv 2 0 0 2\nv 0 .5 0 .5\nf 1 2 3\n",
+        "v 0 0 0 1 0 0\nv 1e0 0 0\nv 0 1. 0\nf 1 2 3\n",
+        "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/99999\n",
+        "o a\ng b\ns off\nv 0 0 0\nv 1 0 0\nv 0 1 0\ng c\nf 1// 2// 3//\ng d\n",
+    ] {
+        let mesh = good(text);
+        assert_eq!(mesh.triangles, plain.triangles, "{text:?}");
+        assert_eq!(mesh.warnings, plain.warnings, "{text:?}");
+        assert_ne!(mesh.id, plain.id);
+    }
+}
+
+#[test]
+fn polygons_become_fans() {
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    let mesh = good(&format!("{square}f 1 2 3 4\n"));
+    assert_eq!(mesh.triangles.len(), 2);
+    assert_eq!(codes(&mesh), ["mesh_open"]);
+    warned(&mesh, "mesh_open", "4 edges");
+    let pentagon = good("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv -1 1 0\nf 1 2 3 4 5\n");
+    assert_eq!(pentagon.triangles.len(), 3);
+    // An arrow head whose fan folds over itself.
+    let arrow = good("v 0 2 0\nv -1 0 0\nv 0 1 0\nv 1 0 0\nf 2 3 4 1\n");
+    warned(&arrow, "mesh_concave_polygons", "1 polygons");
+}
+
+#[test]
+fn lines_and_points_are_no_triangles() {
+    let mesh = good(&format!(
+        "{TRIANGLE}l 1 2 3\np 1\ncurv2 1 2\nf 1 2\nf 1\nf\n"
+    ));
+    assert_eq!(mesh.triangles.len(), 1);
+    warned(&mesh, "mesh_ignored_lines", "3 lines");
+    warned(&mesh, "mesh_ignored_lines", "line 5 (`l`)");
+    warned(&mesh, "mesh_small_faces", "3 faces");
+}
+
+#[test]
+fn normals_come_from_the_file_where_it_has_good_ones() {
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    let mesh = good(&format!(
+        "{vertices}vn 0 3 4\nvn 0 0 0\nvn nan 1 0\nvn 1e-200 0 1e-200\nf 1//1 2//2 3//3\nf 3//-1 2 1\n"
+    ));
+    assert_eq!(
+        mesh.triangles[0].normals,
+        [Vec3::new(0.0, 0.6, 0.8), Vec3::Z, Vec3::Z]
+    );
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let [first, second, third] = mesh.triangles[1].normals;
+    assert!(
+        (first - Vec3::new(half, 0.0, half)).length() < 1e-6,
+        "{first}"
+    );
+    // A corner without a normal takes the face's, not that of the corner before it.
+    assert_eq!([second, third], [Vec3::NEG_Z; 2]);
+    warned(&mesh, "mesh_bad_normals", "2 normals");
+    let turned = good(&format!("{vertices}vn 0 0 -1\nf 1//1 2//1 3//1\n"));
+    assert_eq!(turned.triangles[0].normals, [Vec3::NEG_Z; 3]);
+    warned(&turned, "mesh_normals_against_winding", "1 triangles");
+}
+
+#[test]
+fn degenerate_and_doubled_triangles_are_left_out() {
+    let mesh = good(&format!(
+        "{TETRAHEDRON}v 2 0 0\nf 1 1 2\nf 1 2 5\nf 2 2 2\nf 3 2 1\nv -0 0 0\nf 6 3 2\n"
+    ));
+    assert_eq!(mesh.triangles.len(), 4);
+    warned(&mesh, "mesh_degenerate_triangles", "3 triangles");
+    warned(&mesh, "mesh_duplicate_triangles", "2 triangles");
+    assert_eq!(mesh.warnings.len(), 2, "{:?}", mesh.warnings);
+    // The same corners the other way round are the back of a sheet, and stay.
+    let sheet = good(&format!("{TRIANGLE}f 1 3 2\n"));
+    assert_eq!(sheet.triangles.len(), 2);
+    assert!(sheet.warnings.is_empty(), "{:?}", sheet.warnings);
+}
+
+#[test]
+fn thin_triangles_are_no_degenerate_ones() {
+    let mesh = good("v 0 0 0\nv 1000 0 0\nv 500 1e-5 0\nf 1 2 3\n");
+    assert_eq!(mesh.triangles.len(), 1);
+    assert_eq!(mesh.triangles[0].normals, [Vec3::Z; 3]);
+    let small = good("v 0 0 0\nv 1e-9 0 0\nv 0 1e-9 0\nf 1 2 3\n");
+    assert_eq!(small.triangles.len(), 1);
+    let edge = good("v 1e9 1e9 1e9\nv -1e9 1e9 1e9\nv -1e9 -1e9 -1e9\nf 1 2 3\n");
+    assert!(edge.triangles[0].normals[0].is_normalized());
+}
+
+#[test]
+fn bad_topology_is_kept_and_said() {
+    let mesh = good(&format!("{TETRAHEDRON}v 0 -1 0\nf 1 2 5\nf 1 3 4\n"));
+    assert_eq!(mesh.triangles.len(), 6);
+    warned(&mesh, "mesh_non_manifold", "4 edges");
+    warned(&mesh, "mesh_open", "2 edges");
+    let turned = good(&TETRAHEDRON.replace("f 1 4 3", "f 1 3 4"));
+    assert_eq!(turned.triangles.len(), 4);
+    warned(&turned, "mesh_winding", "3 edges");
+}
+
+const PAINTED: &str =
+    "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 3 2\n";
+
+#[test]
+fn materials_come_from_the_mtl() {
+    let mtl =
+        "newmtl unused\nKd 1 1 1\nnewmtl blue\nKa 1\nKd 0 0 1\nnewmtl red\nKd 0.9 0.1 0.1\nNs\n";
+    let mesh = read_with(PAINTED, mtl).unwrap();
+    let materials: Vec<_> = mesh
+        .materials
+        .iter()
+        .map(|m| (m.name.as_str(), m.albedo))
+        .collect();
+    assert_eq!(
+        materials,
+        [("blue", [0.0, 0.0, 1.0]), ("red", [0.9, 0.1, 0.1])]
+    );
+    assert_eq!(
+        mesh.triangles
+            .iter()
+            .map(|t| t.material)
+            .collect::<Vec<_>>(),
+        [1, 0]
+    );
+    assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+    // The MTL counts wherever, and whether or not, the OBJ names a library.
+    for text in [
+        PAINTED.replace("mtllib paint.mtl\n", ""),
+        format!(
+            "{}mtllib late.mtl\n",
+            PAINTED.replace("mtllib paint.mtl\n", "")
+        ),
+        PAINTED.replace("paint.mtl", "../../etc/passwd"),
+    ] {
+        assert_eq!(read_with(&text, mtl).unwrap().materials, mesh.materials);
+    }
+}
+
+#[test]
+fn a_library_path_is_never_opened() {
+    // The file exists and is a valid MTL; without it in the request the material stays unknown.
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meshes/teapot.mtl");
+    assert!(std::path::Path::new(path).exists());
+    let text = PAINTED.replace("paint.mtl", path).replace("red", "ceramic");
+    let mesh = good(&text);
+    assert_eq!(mesh.materials.len(), 1);
+    assert_eq!(mesh.materials[0].albedo, [DEFAULT_ALBEDO; 3]);
+    warned(&mesh, "mesh_missing_material", "no MTL was sent");
+}
+
+#[test]
+fn missing_and_useless_materials_are_said() {
+    warned(&good(PAINTED), "mesh_missing_material", "`paint.mtl`");
+    let unnamed = PAINTED.replace("mtllib paint.mtl\n", "");
+    warned(&good(&unnamed), "mesh_missing_material", "`blue`, `red`");
+    let half = read_with(PAINTED, "newmtl red\nKd 0.5\n").unwrap();
+    warned(&half, "mesh_missing_material", "1 materials");
+    warned(&half, "mesh_missing_material", "`blue`");
+    assert_eq!(half.materials[0].albedo, [0.5; 3]);
+    assert_eq!(half.materials[1].albedo, [DEFAULT_ALBEDO; 3]);
+    assert_eq!(half.triangles[1].material, 1);
+    for mtl in ["", "newmtl green\nKd 0 1 0\n"] {
+        let mesh = read_with(TRIANGLE, mtl).unwrap();
+        warned(&mesh, "mesh_mtl_ignored", "no effect");
+        assert_eq!(mesh.materials[0].name, "");
+    }
+    let textured = read_with(
+        PAINTED,
+        "newmtl red\nmap_Kd a.png\nnewmtl blue\nKd spectral b.rfl\n",
+    )
+    .unwrap();
+    warned(&textured, "mesh_textures_ignored", "1 textures");
+    warned(&textured, "mesh_spectra_ignored", "1 spectral");
+    assert_eq!(textured.materials[0].albedo, [DEFAULT_ALBEDO; 3]);
+}
+
+#[test]
+fn reflectances_are_clamped_and_said() {
+    let mesh = read_with(
+        PAINTED,
+        "newmtl red\nKd 1.5 -1 0.25\nnewmtl blue\nKd nan inf -inf\n",
+    )
+    .unwrap();
+    assert_eq!(mesh.materials[0].albedo, [1.0, 0.0, 0.25]);
+    assert_eq!(mesh.materials[1].albedo, [DEFAULT_ALBEDO, 1.0, 0.0]);
+    warned(&mesh, "mesh_material_clamped", "`blue`");
+    assert_eq!(codes(&mesh), ["mesh_material_clamped"; 2]);
+}
+
+#[test]
+fn a_trailing_material_without_faces_is_harmless() {
+    let mesh = read_with(&format!("{TRIANGLE}usemtl red\n"), "newmtl red\nKd 1 0 0\n").unwrap();
+    assert_eq!(mesh.materials.len(), 1);
+    assert_eq!(mesh.materials[0].name, "");
+}
+
+#[test]
+fn empty_and_binary_bodies_are_refused() {
+    for text in ["", " \n\t\r\n", "\u{feff}"] {
+        assert_eq!(refused(text, &["empty", "`f a b c`"]), MeshError::Empty);
+    }
+    let error = obj::read(b"v 0 0 0\nv \xff 0 0\n", None, &Limits::default()).unwrap_err();
+    assert_eq!(
+        error,
+        MeshError::NotUtf8 {
+            file: "OBJ",
+            offset: 10,
+            line: 2
+        }
+    );
+    let error = obj::read(TRIANGLE.as_bytes(), Some(b"\x89PNG"), &Limits::default()).unwrap_err();
+    assert_eq!(
+        error,
+        MeshError::NotUtf8 {
+            file: "MTL",
+            offset: 0,
+            line: 1
+        }
+    );
+    assert!(error.to_string().contains("MTL is not UTF-8"));
+}
+
+#[test]
+fn a_mesh_without_faces_is_refused() {
+    for (text, vertices) in [
+        ("v 0 0 0\nv 1 0 0\n", 2),
+        ("v 0 0 0\nv 1 0 0\nf 1 2\n", 2),
+        ("solid ascii_stl\n facet normal 0 0 1\n", 0),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n", 3),
+    ] {
+        assert_eq!(
+            refused(text, &["no face", "f 1 2 3"]),
+            MeshError::NoFaces { vertices }
+        );
+    }
+}
+
+#[test]
+fn indices_out_of_range_are_refused() {
+    for (face, index, what) in [
+        ("1 2 4", 4, "position"),
+        ("0 1 2", 0, "position"),
+        ("1 2 -4", -4, "position"),
+        ("1 2 18446744073709551", 18_446_744_073_709_551, "position"),
+        ("1 2 -9223372036854775808", i64::MIN, "position"),
+        ("1//1 2//1 3//2", 2, "normal"),
+        ("1//1 2//1 3//-2", -2, "normal"),
+        ("1//0 2//1 3//1", 0, "normal"),
+    ] {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1 2 3\nf {face}\n");
+        let needle = format!("{what} index {index} is out of range");
+        let error = refused(&text, &["line 6, face 2", &needle, "accepted are 1 … "]);
+        assert!(matches!(
+            error,
+            MeshError::FaceIndex {
+                line: 6,
+                face: 2,
+                ..
+            }
+        ));
+    }
+}
+
+#[test]
+fn coordinates_beyond_sense_are_refused() {
+    for word in ["nan", "inf", "-infinity", "1e999"] {
+        let error = refused(
+            &format!("v 0 0 0\nv 0 {word} 0\n"),
+            &["line 2", word, "not finite"],
+        );
+        assert!(matches!(error, MeshError::NonFinite { line: 2, .. }));
+    }
+    let error = refused(
+        "v 1.5e9 0 0\n",
+        &["line 1", "`1.5e9`", "too large", "-1e9 … 1e9"],
+    );
+    assert!(matches!(error, MeshError::TooLarge { line: 1, .. }));
+    // A weight divides: 5e8 / 0.1.
+    assert!(matches!(
+        read("v 5e8 0 0 0.1\n"),
+        Err(MeshError::TooLarge { .. })
+    ));
+}
+
+#[test]
+fn too_many_triangles_are_refused_early() {
+    let limits = Limits {
+        max_triangles: 3,
+        ..Limits::default()
+    };
+    let read = |text: &str| obj::read(text.as_bytes(), None, &limits);
+    assert!(read(&format!("{TRIANGLE}f 1 3 2\n")).is_ok());
+    // What follows the face that is too many is not looked at.
+    let error = read(&format!("{TETRAHEDRON}v broken\n")).unwrap_err();
+    assert_eq!(error, MeshError::TooManyTriangles { line: 8, limit: 3 });
+    assert!(error.to_string().contains("more than 3 triangles"));
+    // A polygon of six corners is four triangles.
+    let error = read("v 0 0 0\nf 1 1 1 1 1 1\n").unwrap_err();
+    assert_eq!(error, MeshError::TooManyTriangles { line: 2, limit: 3 });
+}
+
+#[test]
+fn a_mesh_of_slivers_is_refused() {
+    let error = refused(
+        "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\nf 1 1 2\n",
+        &["none of the 2 triangles has an area"],
+    );
+    assert_eq!(error, MeshError::NoArea { triangles: 2 });
+    assert!(matches!(
+        read("v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nf 1 2 3\n"),
+        Err(MeshError::NoArea { .. })
+    ));
+}
+
+#[test]
+fn syntax_errors_name_the_line() {
+    let long = "x".repeat(300);
+    for (text, needles) in [
+        ("v 0 0\n", ["OBJ line 1", "2 values"]),
+        ("v 0 0 0 1 1\n", ["OBJ line 1", "5 values"]),
+        ("\nv 1,5 0 0\n", ["OBJ line 2", "`1,5` is not a number"]),
+        ("v 0 0 0 0\n", ["OBJ line 1", "weight `0`"]),
+        ("v 0 0 0 nan\n", ["OBJ line 1", "weight `nan`"]),
+        ("vn 0 1\n", ["OBJ line 1", "2 values"]),
+        ("vn 0 1 0 0\n", ["OBJ line 1", "4 values"]),
+        ("vn a b c\n", ["OBJ line 1", "`a` is not a number"]),
+        (
+            "v 0 0 0\nf 1 one 1\n",
+            ["OBJ line 2", "`one` is not a face corner"],
+        ),
+        ("v 0 0 0\nf 1 /1 1\n", ["OBJ line 2", "`/1` is not"]),
+        ("v 0 0 0\nf 1 1/1/1/1 1\n", ["OBJ line 2", "`1/1/1/1`"]),
+        ("v 0 0 0\nf 1 1.5 1\n", ["OBJ line 2", "whole numbers"]),
+        ("usemtl\n", ["OBJ line 1", "name of 0 bytes"]),
+        (
+            &format!("mtllib {long}\n"),
+            ["OBJ line 1", "name of 300 bytes"],
+        ),
+    ] {
+        let error = refused(text, &needles);
+        assert!(
+            matches!(error, MeshError::Syntax { file: "OBJ", .. }),
+            "{error:?}"
+        );
+    }
+    for (mtl, needles) in [
+        ("newmtl a\nKd 0.5 0.5\n", ["MTL line 2", "2 values"]),
+        ("newmtl a\nKd\n", ["MTL line 2", "0 values"]),
+        (
+            "newmtl a\nKd red\n",
+            ["MTL line 2", "`red` is not a number"],
+        ),
+        ("Kd 1 1 1\n", ["MTL line 1", "before any material"]),
+        ("newmtl\n", ["MTL line 1", "name of 0 bytes"]),
+    ] {
+        let message = read_with(TRIANGLE, mtl).unwrap_err().to_string();
+        assert!(needles.iter().all(|n| message.contains(n)), "{message}");
+    }
+}
+
+#[test]
+fn ids_tell_uploads_apart() {
+    assert_eq!(
+        obj::id(TRIANGLE.as_bytes(), None),
+        format!("blake3:{}", blake3::hash(TRIANGLE.as_bytes()).to_hex())
+    );
+    assert_eq!(good(TRIANGLE).id, obj::id(TRIANGLE.as_bytes(), None));
+    let pairs: [(&[u8], Option<&[u8]>); 6] = [
+        (b"ab", None),
+        (b"ab", Some(b"")),
+        (b"a", Some(b"b")),
+        (b"", Some(b"ab")),
+        (b"ba", Some(b"")),
+        // What the hash of a pair takes in, sent as one file.
+        (b"\x01\0\0\0\0\0\0\0a\x01\0\0\0\0\0\0\0b", None),
+    ];
+    let ids: std::collections::BTreeSet<String> =
+        pairs.iter().map(|(o, m)| obj::id(o, *m)).collect();
+    assert_eq!(ids.len(), pairs.len());
+}
+
+#[test]
+fn the_same_bytes_give_the_same_mesh() {
+    let text = std::fs::read(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/scenes/meshes/torus_knot.obj"
+    ))
+    .unwrap();
+    let read = || obj::read(&text, None, &Limits::default()).unwrap();
+    let (first, second) = (read(), read());
+    assert_eq!(first.triangles, second.triangles);
+    assert_eq!(first.hierarchy, second.hierarchy);
+    assert_eq!(first.info(), second.info());
+}
+
+#[test]
+fn damaged_files_give_a_sound_mesh_or_an_error() {
+    const TOKENS: [&str; 24] = [
+        "v",
+        "vn",
+        "vt",
+        "f",
+        "l",
+        "usemtl",
+        "mtllib",
+        "newmtl",
+        "Kd",
+        "0",
+        "1",
+        "-1",
+        "3",
+        "1e9",
+        "-1e-40",
+        "nan",
+        "inf",
+        "1//1",
+        "2/7/2",
+        "-3//-1",
+        "\\",
+        "#",
+        "\u{feff}",
+        "9223372036854775807",
+    ];
+    let mut state = 42_u64;
+    let mut random = |below: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let start = format!("{TETRAHEDRON}vn 0 0 1\nf 1//1 2//1 3//1 4//1\nusemtl red\nf -1 -2 -3\n");
+    let (mut read, mut refused) = (0, 0);
+    for _ in 0..4_000 {
+        let mut damaged = [start.clone(), "newmtl red\nKd 1 0 0\nKa 1\n".to_owned()];
+        for text in &mut damaged {
+            for _ in 0..random(4) {
+                let mut words: Vec<&str> = text.split_inclusive([' ', '\n']).collect();
+                let at = random(words.len());
+                match random(4) {
+                    0 => words.insert(at, " "),
+                    1 => drop(words.remove(at)),
+                    2 => words.insert(at, "\n"),
+                    _ => words.insert(at, TOKENS[random(TOKENS.len())]),
+                }
+                *text = words.concat();
+            }
+        }
+        match read_with(&damaged[0], &damaged[1]) {
+            Err(error) => {
+                refused += 1;
+                assert!(!error.to_string().is_empty());
+                assert!(
+                    !matches!(error, MeshError::Unreadable { .. }),
+                    "{error} {damaged:?}"
+                );
+            }
+            Ok(mesh) => {
+                read += 1;
+                assert!(!mesh.triangles.is_empty());
+                assert_eq!(mesh.hierarchy.len(), 2 * mesh.triangles.len() - 1);
+                for triangle in &mesh.triangles {
+                    assert!(
+                        triangle.positions_m.iter().all(|p| p.is_finite()),
+                        "{damaged:?}"
+                    );
+                    assert!(
+                        triangle.normals.iter().all(|n| n.is_normalized()),
+                        "{damaged:?}"
+                    );
+                    assert!((triangle.material as usize) < mesh.materials.len());
+                }
+            }
+        }
+    }
+    assert!(read > 500 && refused > 500, "{read} {refused}");
+}
