@@ -100,7 +100,7 @@ fn srgb_has_its_published_values() {
     assert_eq!(srgb_from_linear(0.0), 0.0);
     assert!((srgb_from_linear(1.0) - 1.0).abs() < 1e-15);
     // The linear piece, and its end.
-    assert_eq!(srgb_from_linear(0.001), 0.01292);
+    assert!((srgb_from_linear(0.001) - 0.01292).abs() < 1e-15);
     assert!((srgb_from_linear(0.003_130_8) - 0.040_449_936).abs() < 1e-12);
     // 18 % grey is 0.461 356…, and half the signal is 0.214 041….
     assert!((srgb_from_linear(0.18) - 0.461_356_129_5).abs() < 1e-9);
