@@ -9,6 +9,15 @@ fn mean_positive(x_a: f32, x_b: f32) -> f32 {
     return 0.5 * (m_a + m_b) * share;
 }
 
+// Mean of clamp(x, 0, w) for x running evenly from `x_a` to `x_b`; keeps its digits where the edge is long against `w`.
+fn mean_clamped(x_a: f32, x_b: f32, w: f32) -> f32 {
+    let c_a = clamp(x_a, 0.0, w);
+    let c_b = clamp(x_b, 0.0, w);
+    let d = x_b - x_a;
+    if d == 0.0 { return c_a; }
+    return (c_b - c_a) / d * 0.5 * (c_a + c_b) + w * ((max(x_b, w) - max(x_a, w)) / d);
+}
+
 // Share of a tent density on t_0 ≤ t_peak ≤ t_1 that lies below `t`.
 fn tent_share_below(t: f32, t_0: f32, t_peak: f32, t_1: f32) -> f32 {
     if t <= t_0 { return 0.0; }

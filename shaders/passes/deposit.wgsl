@@ -112,7 +112,9 @@ fn deposit_texels(b: Beam, arriving: vec3f, first: u32, end: u32, stride: u32) -
         let row = cell_bounds(texel.y, size.y, base.y, low.y, high.y);
         let column = cell_bounds(texel.x, size.x, base.x, low.x, high.x);
         let edges = clip_to_row(p, q, s, row.x, row.y);
-        let share = max((area_right_of(edges, column.x) - area_right_of(edges, column.y)) * per_area, 0.0);
+        if column.y < row_low(edges) || column.x > row_high(edges) { continue; }
+        // Counted from the texel itself and cut off behind it, a long edge costs no digits.
+        let share = max(area_within(moved(edges, column.x), column.y - column.x) * per_area, 0.0);
         beside += deposit_share(target_map, texel.x, texel.y, share, arriving);
     }
     return beside;

@@ -48,11 +48,33 @@ fn clip_to_row(a: vec2f, b: vec2f, c: vec2f, y_0: f32, y_1: f32) -> RowEdges {
     return RowEdges(x_a, x_b, y_end - y_start);
 }
 
+// The same edges with x counted from `x`: coverage keeps its last bits when it is counted from near by.
+fn moved(edges: RowEdges, x: f32) -> RowEdges {
+    return RowEdges(edges.x_a - x, edges.x_b - x, edges.dy);
+}
+
+fn row_low(edges: RowEdges) -> f32 {
+    let low = min(edges.x_a, edges.x_b);
+    return min(low.x, min(low.y, low.z));
+}
+
+fn row_high(edges: RowEdges) -> f32 {
+    let high = max(edges.x_a, edges.x_b);
+    return max(high.x, max(high.y, high.z));
+}
+
 // Signed area of the triangle's row to the right of `x`.
 fn area_right_of(edges: RowEdges, x: f32) -> f32 {
     return edges.dy.x * mean_positive(edges.x_a.x - x, edges.x_b.x - x)
         + edges.dy.y * mean_positive(edges.x_a.y - x, edges.x_b.y - x)
         + edges.dy.z * mean_positive(edges.x_a.z - x, edges.x_b.z - x);
+}
+
+// Signed area of the row between 0 and `width`.
+fn area_within(edges: RowEdges, width: f32) -> f32 {
+    return edges.dy.x * mean_clamped(edges.x_a.x, edges.x_b.x, width)
+        + edges.dy.y * mean_clamped(edges.x_a.y, edges.x_b.y, width)
+        + edges.dy.z * mean_clamped(edges.x_a.z, edges.x_b.z, width);
 }
 
 // Bounds of texel `i` of `count` along one axis; the border cells −1 and `count` reach to the footprint's end.
@@ -95,15 +117,13 @@ fn deposit_triangle(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_f
     for (var y = first.y; y <= last.y; y++) {
         let row = cell_bounds(y, size.y, base.y, lo.y, hi.y);
         let edges = clip_to_row(p, q, r, row.x, row.y);
-        let x_low = min(min(edges.x_a.x, edges.x_a.y), edges.x_a.z);
-        let x_high = max(max(edges.x_a.x, edges.x_a.y), edges.x_a.z);
-        let x_last = max(max(edges.x_b.x, edges.x_b.y), edges.x_b.z);
-        let x_first = min(min(edges.x_b.x, edges.x_b.y), edges.x_b.z);
-        let column_first = max(i32(floor(min(x_low, x_first) + base.x)), first.x);
-        let column_last = min(i32(floor(max(x_high, x_last) + base.x)), last.x);
-        var right = area_right_of(edges, cell_bounds(column_first, size.x, base.x, lo.x, hi.x).x);
+        let column_first = max(i32(floor(row_low(edges) + base.x)), first.x);
+        let column_last = min(i32(floor(row_high(edges) + base.x)), last.x);
+        let start = cell_bounds(column_first, size.x, base.x, lo.x, hi.x).x;
+        let near = moved(edges, start);
+        var right = area_right_of(near, 0.0);
         for (var x = column_first; x <= column_last; x++) {
-            let next = area_right_of(edges, cell_bounds(x, size.x, base.x, lo.x, hi.x).y);
+            let next = area_right_of(near, cell_bounds(x, size.x, base.x, lo.x, hi.x).y - start);
             let share = max((right - next) * per_area, 0.0);
             right = next;
             beside += deposit_share(target_map, x, y, share, triangle_flux);

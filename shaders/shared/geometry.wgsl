@@ -84,19 +84,19 @@ fn trace_instance(instance: Instance, origin: vec3f, direction: vec3f, t_min: f3
     while node < instance.node_count {
         let low = geometry[instance.first_node + 2u * node];
         let high = geometry[instance.first_node + 2u * node + 1u];
-        if (low.w & LEAF) != 0u {
-            let at = instance.first_triangle + 4u * (low.w & ~LEAF);
-            let a = bitcast<vec3f>(geometry[at].xyz);
-            let b = bitcast<vec3f>(geometry[at + 1u].xyz);
-            let c = bitcast<vec3f>(geometry[at + 2u].xyz);
-            let met = triangle_met(a, b, c, o, d);
-            if met.x > t_min && met.x < best.t { best = MeshHit(met.x, at, met.y, met.z); }
+        if !box_met(bitcast<vec3f>(low.xyz), bitcast<vec3f>(high.xyz), o, inverse, best.t) {
             node = high.w;
-        } else if box_met(bitcast<vec3f>(low.xyz), bitcast<vec3f>(high.xyz), o, inverse, best.t) {
-            node = low.w;
-        } else {
-            node = high.w;
+            continue;
         }
+        if (low.w & LEAF) == 0u {
+            node = low.w;
+            continue;
+        }
+        let at = instance.first_triangle + 4u * (low.w & ~LEAF);
+        let met = triangle_met(
+            bitcast<vec3f>(geometry[at].xyz), bitcast<vec3f>(geometry[at + 1u].xyz), bitcast<vec3f>(geometry[at + 2u].xyz), o, d);
+        if met.x > t_min && met.x < best.t { best = MeshHit(met.x, at, met.y, met.z); }
+        node = high.w;
     }
     return best;
 }

@@ -6,6 +6,9 @@ use super::light::{light_uniform, receivers};
 use super::slot::{self, Slot};
 use super::surface::wanted_for_sun;
 
+/// Texels that one invocation resolves, as in the shader.
+pub const TEXELS_EACH: u32 = 16;
+
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "irradiance",
@@ -43,7 +46,7 @@ pub const PASS: PassDesc = PassDesc {
                 density_per_flux: receiver.density_per_flux,
                 ..Resolve::default()
             };
-            let groups = texels.div_ceil(64);
+            let groups = texels.div_ceil(64 * TEXELS_EACH);
             let columns = groups.min(slot::QUEUE_CAPACITY);
             steps.push(Step {
                 entry: "irradiance_main",

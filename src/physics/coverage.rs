@@ -16,6 +16,19 @@ pub fn mean_positive(x_a: f64, x_b: f64) -> f64 {
     0.5 * (m_a + m_b) * share
 }
 
+/// Mean of clamp(x, 0, w) for x running evenly from `x_a` to `x_b`, `w` ≥ 0; keeps its digits where the edge is long against `w`.
+///
+/// With c = clamp(x, 0, w) and m = max(x, w): ((c_b − c_a)(c_a + c_b)/2 + w (m_b − m_a)) / (x_b − x_a). (Ours.)
+pub fn mean_clamped(x_a: f64, x_b: f64, w: f64) -> f64 {
+    let c_a = x_a.clamp(0.0, w);
+    let c_b = x_b.clamp(0.0, w);
+    let d = x_b - x_a;
+    if d == 0.0 {
+        return c_a;
+    }
+    (c_b - c_a) / d * 0.5 * (c_a + c_b) + w * ((x_b.max(w) - x_a.max(w)) / d)
+}
+
 /// Share of a tent density on `t_0` ≤ `t_peak` ≤ `t_1` that lies below `t`: the density of a triangle's flux along its longest
 /// side when its area vanishes. 0 at t_0, (t_peak − t_0)/(t_1 − t_0) at the peak, 1 at t_1. (Ours.)
 pub fn tent_share_below(t: f64, t_0: f64, t_peak: f64, t_1: f64) -> f64 {

@@ -10,11 +10,6 @@ use crate::mesh::Mesh;
 use crate::passes::gpu_data::{Instance, vec4};
 use crate::scene::facts::SceneFacts;
 
-/// 16-byte units of a hierarchy node.
-const NODE_UNITS: u32 = 2;
-/// 16-byte units of a triangle.
-const TRIANGLE_UNITS: u32 = 4;
-
 /// Where a mesh lies in the buffer, in 16-byte units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {

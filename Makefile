@@ -1,0 +1,41 @@
+# Caustica: what to type. Everything is built in release mode: there is one profile, so nothing is compiled twice.
+
+CARGO ?= cargo
+CARGO_TARGET_DIR ?= target
+PROGRAM := $(CARGO_TARGET_DIR)/release/caustica
+PICTURE := out/teapot_pool.png
+
+.DEFAULT_GOAL := build
+.PHONY: demo build test lint bench clean deps
+
+# Render the example scene.
+demo: build
+	@mkdir -p $(dir $(PICTURE))
+	$(PROGRAM) render scenes/teapot_pool.json -o $(PICTURE)
+	@echo "The picture is $(abspath $(PICTURE))"
+
+# Compile the program.
+build: deps
+	$(CARGO) build --release --locked
+
+# Run all tests; those on the GPU use a software driver where there is no other.
+test: deps
+	$(CARGO) test --release --locked
+
+# Check formatting, and let no warning pass.
+lint: deps
+	$(CARGO) fmt --check
+	$(CARGO) clippy --release --locked --all-targets -- -D warnings
+
+# Measure.
+bench: deps
+	$(CARGO) bench --locked --bench caustica
+
+# Remove everything that was made.
+clean:
+	$(CARGO) clean
+	rm -rf out
+
+# Install what is missing on this machine.
+deps:
+	@./deploy/install-deps.sh --build --run

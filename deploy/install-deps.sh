@@ -1,0 +1,104 @@
+#!/bin/sh
+# Installs what Caustica needs from the system, if it is missing. The Makefile, the Dockerfile and the CI call this one
+# script, so that there is one list.
+#
+#   deploy/install-deps.sh --build       what compiling needs: a C compiler and linker, make
+#   deploy/install-deps.sh --run         what running needs: the Vulkan loader and a driver (a software one if there is none)
+#   deploy/install-deps.sh --container   --run, and what a GPU driver mounted into a container links against
+#
+# Options add up; without any it is --build --run. Nothing is installed, and no root is needed, when everything is there.
+set -eu
+
+usage() {
+    sed -n '2,9s/^# \{0,1\}//p' "$0"
+}
+
+build=no run=no container=no
+[ $# -gt 0 ] || { build=yes run=yes; }
+for option in "$@"; do
+    case $option in
+        --build) build=yes ;;
+        --run) run=yes ;;
+        --container) run=yes container=yes ;;
+        -h | --help) usage && exit 0 ;;
+        *) echo "install-deps: unknown option $option" >&2 && usage >&2 && exit 2 ;;
+    esac
+done
+
+has_command() { command -v "$1" >/dev/null 2>&1; }
+
+# Compiles, finds the C library's headers and links: gcc without libc6-dev fails here.
+has_c_compiler() {
+    has_command cc && printf '#include <stdio.h>\nint main(void) { return 0; }\n' |
+        cc -x c -o /dev/null - >/dev/null 2>&1
+}
+
+has_library() {
+    for ldconfig in ldconfig /sbin/ldconfig /usr/sbin/ldconfig; do
+        has_command "$ldconfig" && "$ldconfig" -p 2>/dev/null | grep -q "[[:space:]]$1 " && return 0
+    done
+    return 1
+}
+
+# A driver announces itself to the Vulkan loader by a JSON file.
+has_vulkan_driver() {
+    [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] && return 0
+    for file in /usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json; do
+        [ -e "$file" ] && return 0
+    done
+    return 1
+}
+
+# 1. Look for what is needed; collect the Debian packages of what is not there.
+missing=
+need() { # need PACKAGES TEST...
+    packages=$1
+    shift
+    "$@" || missing="$missing $packages"
+}
+
+if [ $build = yes ]; then
+    # The build of blake3 compiles assembly; Rust links through cc.
+    need "gcc libc6-dev" has_c_compiler
+    need make has_command make
+fi
+# macOS brings Metal, and needs nothing to run.
+if [ $run = yes ] && [ "$(uname -s)" != Darwin ]; then
+    need libvulkan1 has_library libvulkan.so.1
+    need mesa-vulkan-drivers has_vulkan_driver
+fi
+if [ $container = yes ]; then
+    need libegl1 has_library libEGL.so.1
+    need libxext6 has_library libXext.so.6
+fi
+
+# 2. Install it, where the packages have these names.
+if [ -n "$missing" ]; then
+    if ! has_command apt-get; then
+        echo "install-deps: missing here, by the names of the Debian packages:$missing" >&2
+        echo "install-deps: please install their equivalents (a C compiler, make, the Vulkan loader, a Vulkan driver)" >&2
+        # A driver may announce itself elsewhere on such a system, and make may be what called.
+        if [ $build = yes ] && ! has_c_compiler; then exit 1; fi
+        if [ $run = yes ] && ! has_library libvulkan.so.1; then exit 1; fi
+        echo "install-deps: going on with what is here" >&2
+    else
+        sudo=
+        if [ "$(id -u)" -ne 0 ]; then
+            if ! has_command sudo; then
+                echo "install-deps: please run as root: apt-get install --no-install-recommends$missing" >&2
+                exit 1
+            fi
+            sudo=sudo
+        fi
+        echo "install-deps: installing$missing" >&2
+        $sudo apt-get update -q >&2
+        # shellcheck disable=SC2086 # a list of words
+        $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing >&2
+    fi
+fi
+
+# 3. Rust comes from rustup, not from the system: Debian's is too old.
+if [ $build = yes ] && ! has_command cargo; then
+    echo "install-deps: cargo is missing; please install Rust from https://rustup.rs" >&2
+    exit 1
+fi
