@@ -1,0 +1,601 @@
+//! Ranges, references, limits and meshes by id: every rule is broken once, and obeyed at its very edge.
+
+use std::sync::Arc;
+
+use caustica::config::Limits;
+use caustica::mesh::{Material, Mesh};
+use caustica::scene::{Camera, Issue, IssueKind, Scene, resolve};
+use glam::{DVec3, Vec3};
+use serde_json::{Value, json};
+
+/// A valid scene that has everything.
+fn full() -> Value {
+    json!({
+        "water": {
+            "waves": [{ "kind": "sine", "amplitude_m": 0.03, "wavelength_m": 0.9, "period_s": 1.0 }],
+            "level_m": 0.0, "ior": 1.333, "absorption_per_m": [0.35, 0.07, 0.03], "scattering_per_m": [0, 0, 0]
+        },
+        "floor": { "depth_m": 2.0, "size_m": [4, 4], "center_m": [1, 0], "albedo": [0.7, 0.65, 0.5] },
+        "lights": [
+            { "kind": "sun", "elevation_deg": 60, "azimuth_deg": 30, "irradiance_w_m2": [1, 1, 1] },
+            { "kind": "sky", "radiance_w_m2_sr": [20, 30, 45] }
+        ],
+        "objects": [{
+            "mesh": "blake3:00", "translation_m": [0, -1, 0], "rotation": [0, 0, 0, 1], "scale": 0.5, "albedo": [1, 0, 0.5]
+        }],
+        "camera": { "position_m": [0, 2.5, 4], "target_m": [0, -1.5, 0], "up": [0, 1, 0], "vertical_fov_deg": 45 },
+        "quality": { "water_cells": 256, "map_texels": 512, "level_map_texels": 256, "split_levels": 2 },
+        "output": {
+            "kind": "view", "width": 960, "height": 540, "png_bits": 8, "exposure_ev": 0.0, "layers": ["radiance"]
+        },
+        "time_s": 0.0
+    })
+}
+
+/// A valid scene whose output is a map, with these fields.
+fn map_scene(fields: Value) -> Value {
+    let mut scene = full();
+    scene["output"] = json!({ "kind": "irradiance_map" });
+    let output = scene["output"].as_object_mut().unwrap();
+    output.extend(fields.as_object().unwrap().clone());
+    scene
+}
+
+fn findings_in(value: &Value, limits: &Limits) -> Vec<Issue> {
+    let scene = Scene::from_value(value.clone()).unwrap_or_else(|error| panic!("{value}: {error}"));
+    scene
+        .validate(limits)
+        .err()
+        .map_or_else(Vec::new, |error| error.issues)
+}
+
+fn findings(value: &Value) -> Vec<Issue> {
+    findings_in(value, &Limits::default())
+}
+
+fn with(mut value: Value, pointer: &str, replacement: Value) -> Value {
+    *value
+        .pointer_mut(pointer)
+        .unwrap_or_else(|| panic!("no {pointer}")) = replacement;
+    value
+}
+
+/// Asserts one finding at `pointer` and returns it.
+fn only(value: &Value, pointer: &str) -> Issue {
+    let found = findings(value);
+    assert_eq!(found.len(), 1, "{pointer}: {found:#?}");
+    assert_eq!(found[0].pointer, pointer);
+    assert!(!found[0].accepted.is_empty());
+    found[0].clone()
+}
+
+#[test]
+fn the_full_scene_is_valid() {
+    assert_eq!(findings(&full()), []);
+    assert_eq!(findings(&map_scene(json!({ "receiver": "floor" }))), []);
+    assert_eq!(findings(&map_scene(json!({ "receiver": 0 }))), []);
+}
+
+/// (pointer, smallest, largest, a bit below, a bit above); the bits are `null` where the type ends there.
+fn ranges() -> Vec<(&'static str, [f64; 2], [Option<f64>; 2])> {
+    let both = |a: f64, b: f64| [Some(a), Some(b)];
+    vec![
+        ("/time_s", [-1e12, 1e12], both(-1.001e12, 1.001e12)),
+        ("/water/level_m", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
+        ("/water/ior", [1.0, 4.0], both(0.999, 4.001)),
+        (
+            "/water/absorption_per_m/0",
+            [0.0, 1e4],
+            both(-1e-9, 10_001.0),
+        ),
+        (
+            "/water/scattering_per_m/2",
+            [0.0, 1e4],
+            both(-1e-9, 10_001.0),
+        ),
+        (
+            "/water/waves/0/amplitude_m",
+            [0.0, 100.0],
+            both(-1e-9, 100.1),
+        ),
+        (
+            "/water/waves/0/wavelength_m",
+            [1e-3, 1e5],
+            both(0.9e-3, 1.1e5),
+        ),
+        ("/water/waves/0/period_s", [1e-6, 1e12], both(0.0, 1.1e12)),
+        ("/floor/depth_m", [0.0, 11_000.0], both(-0.1, 11_000.1)),
+        ("/floor/size_m/1", [1e-6, 1e6], both(0.0, 1.1e6)),
+        ("/floor/center_m/0", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
+        ("/floor/albedo/0", [0.0, 1.0], both(-0.001, 1.001)),
+        ("/lights/0/elevation_deg", [-90.0, 90.0], both(-90.1, 90.1)),
+        ("/lights/0/azimuth_deg", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
+        ("/lights/0/irradiance_w_m2/1", [0.0, 1e9], both(-1.0, 1.1e9)),
+        (
+            "/lights/1/radiance_w_m2_sr/1",
+            [0.0, 1e9],
+            both(-1.0, 1.1e9),
+        ),
+        (
+            "/objects/0/translation_m/1",
+            [-1e6, 1e6],
+            both(-1.1e6, 1.1e6),
+        ),
+        ("/objects/0/scale", [1e-6, 1e6], both(0.0, 1.1e6)),
+        ("/objects/0/albedo/2", [0.0, 1.0], both(-0.001, 1.001)),
+        ("/camera/position_m/0", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
+        ("/camera/target_m/0", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
+        ("/camera/vertical_fov_deg", [0.1, 179.0], both(0.09, 179.1)),
+        ("/quality/water_cells", [2.0, 2048.0], both(1.0, 2049.0)),
+        ("/quality/map_texels", [16.0, 4096.0], both(15.0, 4097.0)),
+        (
+            "/quality/level_map_texels",
+            [16.0, 2048.0],
+            both(15.0, 2049.0),
+        ),
+        ("/quality/split_levels", [0.0, 4.0], [None, Some(5.0)]),
+        ("/output/width", [1.0, 16_384.0], both(0.0, 16_385.0)),
+        ("/output/height", [1.0, 16_384.0], both(0.0, 16_385.0)),
+        ("/output/png_bits", [8.0, 16.0], both(7.0, 17.0)),
+        ("/output/exposure_ev", [-40.0, 40.0], both(-40.1, 40.1)),
+    ]
+}
+
+#[test]
+fn every_range_holds_its_ends_and_nothing_beyond() {
+    for (pointer, ends, beyond) in ranges() {
+        for value in ends {
+            assert_eq!(
+                findings(&with(full(), pointer, json!(value))),
+                [],
+                "{pointer} = {value}"
+            );
+        }
+        for value in beyond.into_iter().flatten() {
+            let issue = only(&with(full(), pointer, json!(value)), pointer);
+            assert_eq!(issue.kind, IssueKind::Invalid);
+            assert!(issue.detail.contains("out of range"), "{issue}");
+        }
+    }
+}
+
+#[test]
+fn every_number_of_the_scene_has_a_range() {
+    fn numbers(value: &Value, pointer: &str, found: &mut Vec<String>) {
+        match value {
+            Value::Number(_) => found.push(pointer.to_owned()),
+            Value::Array(items) => {
+                for (index, item) in items.iter().enumerate() {
+                    numbers(item, &format!("{pointer}/{index}"), found);
+                }
+            }
+            Value::Object(members) => {
+                for (key, member) in members {
+                    numbers(member, &format!("{pointer}/{key}"), found);
+                }
+            }
+            _ => {}
+        }
+    }
+    let orthographic = json!({ "kind": "orthographic", "position_m": [0, 1, 0], "target_m": [0, 0, 0], "up": [0, 0, 1], "height_m": 1 });
+    let window = json!({ "receiver": "floor", "min_m": [0, 0], "max_m": [1, 1] });
+    let scenes = [
+        full(),
+        with(full(), "/objects/0/scale", json!([1, 1, 1])),
+        with(full(), "/camera", orthographic),
+        map_scene(window),
+    ];
+    for scene in scenes {
+        // With all defaults written out.
+        let scene = serde_json::to_value(Scene::from_value(scene).unwrap()).unwrap();
+        let mut pointers = Vec::new();
+        numbers(&scene, "", &mut pointers);
+        assert!(pointers.len() > 40);
+        for pointer in pointers {
+            let is_integer = scene.pointer(&pointer).unwrap().is_u64();
+            let huge = if is_integer {
+                json!(4_000_000_000_u32)
+            } else {
+                json!(1e300)
+            };
+            let found = findings(&with(scene.clone(), &pointer, huge));
+            let is_found = found
+                .iter()
+                .any(|issue| pointer.starts_with(&issue.pointer));
+            assert!(is_found, "{pointer}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn numbers_that_json_cannot_hold_are_refused_too() {
+    let mut scene = Scene::from_value(full()).unwrap();
+    scene.time_s = f64::NAN;
+    scene.water.ior = f64::INFINITY;
+    scene.objects[0].rotation = [f64::NAN; 4];
+    let Some(Camera::Perspective(camera)) = &mut scene.camera else {
+        panic!("the camera is perspective");
+    };
+    camera.up = [f64::NEG_INFINITY, 0.0, 0.0];
+    let issues = scene.validate(&Limits::default()).unwrap_err().issues;
+    let pointers: Vec<&str> = issues.iter().map(|issue| issue.pointer.as_str()).collect();
+    assert_eq!(
+        pointers,
+        [
+            "/time_s",
+            "/water/ior",
+            "/objects/0/rotation",
+            "/camera/up/0"
+        ]
+    );
+}
+
+#[test]
+fn schema_ranges_are_the_ones_that_are_enforced() {
+    use caustica::scene::{IrradianceMapOutput, Quality, ViewOutput};
+    use utoipa::PartialSchema;
+    let map = map_scene(json!({ "receiver": "floor", "width": 1, "height": 1, "png_bits": 8 }));
+    let sections = [
+        (Quality::schema(), "/quality", full()),
+        (ViewOutput::schema(), "/output", full()),
+        (IrradianceMapOutput::schema(), "/output", map),
+    ];
+    let mut count = 0;
+    for (schema, section, base) in sections {
+        let schema = serde_json::to_value(schema).unwrap();
+        for (name, property) in schema["properties"].as_object().unwrap() {
+            let (Some(min), Some(max)) =
+                (property["minimum"].as_f64(), property["maximum"].as_f64())
+            else {
+                continue;
+            };
+            count += 1;
+            let pointer = format!("{section}/{name}");
+            for value in [min, max] {
+                assert_eq!(
+                    findings(&with(base.clone(), &pointer, json!(value))),
+                    [],
+                    "{pointer} = {value}"
+                );
+            }
+            only(&with(base.clone(), &pointer, json!(max + 1.0)), &pointer);
+            if min > 0.0 {
+                only(&with(base.clone(), &pointer, json!(min - 1.0)), &pointer);
+            }
+        }
+    }
+    assert_eq!(
+        count, 10,
+        "all integer fields say their range in the schema"
+    );
+}
+
+#[test]
+fn all_findings_are_collected_in_the_order_of_the_scene() {
+    let mut scene = full();
+    for (pointer, value) in [
+        ("/time_s", json!(1e13)),
+        ("/water/ior", json!(0.5)),
+        ("/lights/0/elevation_deg", json!(91)),
+        ("/quality/split_levels", json!(9)),
+        ("/output/layers", json!([])),
+    ] {
+        scene = with(scene, pointer, value);
+    }
+    let found: Vec<String> = findings(&scene)
+        .into_iter()
+        .map(|issue| issue.pointer)
+        .collect();
+    let expected = [
+        "/time_s",
+        "/water/ior",
+        "/lights/0/elevation_deg",
+        "/quality/split_levels",
+        "/output/layers",
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn a_flood_of_findings_is_cut() {
+    let wave = json!({ "kind": "sine", "amplitude_m": -1, "wavelength_m": 0 });
+    let scene = with(full(), "/water/waves", json!(vec![wave; 256]));
+    let found = findings(&scene);
+    assert_eq!(found.len(), 101);
+    assert_eq!(found[100].detail, "412 more findings are not listed");
+}
+
+#[test]
+fn a_view_needs_a_camera_and_a_map_does_not() {
+    let mut scene = full();
+    scene.as_object_mut().unwrap().remove("camera");
+    only(&scene, "/camera");
+    let mut scene = map_scene(json!({ "receiver": "floor" }));
+    scene.as_object_mut().unwrap().remove("camera");
+    assert_eq!(findings(&scene), []);
+}
+
+#[test]
+fn a_camera_has_a_direction_and_an_up_across_it() {
+    let at_target = with(full(), "/camera/target_m", json!([0, 2.5, 4]));
+    only(&at_target, "/camera/target_m");
+    let down = with(full(), "/camera/target_m", json!([0, -1, 4]));
+    let issue = only(&down, "/camera/up");
+    assert!(issue.accepted.contains("[0, 0, -1]"), "{issue}");
+    assert_eq!(findings(&with(down, "/camera/up", json!([0, 0, -1]))), []);
+    only(&with(full(), "/camera/up", json!([0, 0, 0])), "/camera/up");
+    // Any length will do.
+    assert_eq!(
+        findings(&with(full(), "/camera/up", json!([0, 1e-300, 0]))),
+        []
+    );
+    assert_eq!(
+        findings(&with(full(), "/camera/up", json!([0, 1e6, 0]))),
+        []
+    );
+    let orthographic = json!({ "kind": "orthographic", "position_m": [0, 1, 0], "target_m": [0, 0, 0], "height_m": 0 });
+    let found = findings(&with(full(), "/camera", orthographic));
+    let pointers: Vec<&str> = found.iter().map(|issue| issue.pointer.as_str()).collect();
+    assert_eq!(pointers, ["/camera/height_m", "/camera/up"]);
+}
+
+#[test]
+fn rotations_are_quaternions_of_length_one() {
+    for rotation in [
+        json!([0, 0, 0, 0]),
+        json!([0, 0, 0, 1.0011]),
+        json!([0, 0, 0, 0.9989]),
+        json!([1, 1, 1, 1]),
+    ] {
+        only(
+            &with(full(), "/objects/0/rotation", rotation),
+            "/objects/0/rotation",
+        );
+    }
+    for rotation in [json!([0, 0, 0, 1.0009]), json!([0, 0, 0, -0.9991])] {
+        assert_eq!(findings(&with(full(), "/objects/0/rotation", rotation)), []);
+    }
+}
+
+#[test]
+fn scales_per_axis_are_checked_one_by_one() {
+    let scene = with(full(), "/objects/0/scale", json!([1, -1, 1]));
+    only(&scene, "/objects/0/scale/1");
+}
+
+#[test]
+fn layers_fit_the_format() {
+    let layers = |format: &str, layers: Value| {
+        let mut scene = with(full(), "/output/layers", layers);
+        scene["output"]["format"] = json!(format);
+        scene
+    };
+    assert_eq!(findings(&layers("exr", json!(["depth", "normal"]))), []);
+    only(&layers("exr", json!([])), "/output/layers");
+    only(
+        &layers("exr", json!(["depth", "normal", "depth"])),
+        "/output/layers/2",
+    );
+    let issue = only(
+        &layers("png", json!(["radiance", "depth"])),
+        "/output/layers/1",
+    );
+    assert!(issue.accepted.contains("exr"), "{issue}");
+    let flood = findings(&layers("exr", json!(vec!["depth"; 10_000])));
+    assert!((10..100).contains(&flood.len()), "{}", flood.len());
+}
+
+#[test]
+fn png_bits_are_8_or_16() {
+    assert_eq!(findings(&with(full(), "/output/png_bits", json!(16))), []);
+    let issue = only(
+        &with(full(), "/output/png_bits", json!(12)),
+        "/output/png_bits",
+    );
+    assert_eq!(issue.accepted, "8 or 16");
+}
+
+#[test]
+fn limits_are_said_with_numbers() {
+    let limits = Limits {
+        max_pixels: 100,
+        max_objects: 1,
+        max_lights: 2,
+        max_waves: 1,
+        ..Limits::default()
+    };
+    let over = |value: &Value, pointer: &str, detail: &str, accepted: &str| {
+        let found = findings_in(value, &limits);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].pointer, pointer);
+        assert_eq!(found[0].kind, IssueKind::LimitExceeded);
+        assert!(found[0].detail.contains(detail), "{}", found[0]);
+        assert!(found[0].accepted.contains(accepted), "{}", found[0]);
+    };
+    let mut small = with(full(), "/output/width", json!(10));
+    small["output"]["height"] = json!(10);
+    assert_eq!(findings_in(&small, &limits), []);
+    over(
+        &with(small.clone(), "/output/width", json!(11)),
+        "/output",
+        "11 × 10 are 110 pixels",
+        "100",
+    );
+    let doubled = |section: &str| {
+        let mut scene = small.clone();
+        let list = scene.pointer_mut(section).unwrap().as_array_mut().unwrap();
+        list.push(list[0].clone());
+        scene
+    };
+    over(&doubled("/objects"), "/objects", "2 objects", "at most 1");
+    over(&doubled("/lights"), "/lights", "3 lights", "at most 2");
+    over(
+        &doubled("/water/waves"),
+        "/water/waves",
+        "2 waves",
+        "at most 1",
+    );
+    let map = map_scene(json!({ "receiver": "floor" }));
+    over(&map, "/output", "512 × 512 are 262144 pixels", "100");
+    let mesh_map = map_scene(json!({ "receiver": 0 }));
+    over(&mesh_map, "/quality/level_map_texels", "256 × 256", "100");
+}
+
+#[test]
+fn maps_of_a_mesh_name_an_object_and_nothing_of_the_floor() {
+    let issue = only(&map_scene(json!({ "receiver": 1 })), "/output/receiver");
+    assert!(issue.accepted.contains("0 … 0"), "{issue}");
+    let all = json!({ "receiver": 0, "min_m": [0, 0], "max_m": [1, 1], "width": 3, "height": 3 });
+    let found = findings(&map_scene(all));
+    let pointers: Vec<&str> = found.iter().map(|issue| issue.pointer.as_str()).collect();
+    assert_eq!(
+        pointers,
+        [
+            "/output/min_m",
+            "/output/max_m",
+            "/output/width",
+            "/output/height"
+        ]
+    );
+}
+
+#[test]
+fn the_light_of_a_map_is_a_sun() {
+    assert_eq!(
+        findings(&map_scene(json!({ "receiver": "floor", "light": 0 }))),
+        []
+    );
+    let issue = only(
+        &map_scene(json!({ "receiver": "floor", "light": 1 })),
+        "/output/light",
+    );
+    assert_eq!(issue.detail, "light 1 is a sky");
+    let issue = only(
+        &map_scene(json!({ "receiver": "floor", "light": 2 })),
+        "/output/light",
+    );
+    assert_eq!(issue.accepted, "the index of a sun: 0");
+}
+
+#[test]
+fn a_mesh_under_several_suns_needs_to_know_which() {
+    let mut scene = map_scene(json!({ "receiver": 0 }));
+    let sun = scene["lights"][0].clone();
+    scene["lights"].as_array_mut().unwrap().push(sun);
+    let issue = only(&scene, "/output/light");
+    assert_eq!(issue.accepted, "the index of a sun: 0, 2");
+    scene["output"]["light"] = json!(2);
+    assert_eq!(findings(&scene), []);
+    scene["output"] = json!({ "kind": "irradiance_map", "receiver": "floor" });
+    assert_eq!(findings(&scene), []);
+}
+
+#[test]
+fn a_map_of_the_floor_needs_a_floor_and_a_window_on_it() {
+    let mut scene = map_scene(json!({ "receiver": "floor" }));
+    scene.as_object_mut().unwrap().remove("floor");
+    only(&scene, "/output/receiver");
+    // The floor reaches from (-1, -2) to (3, 2).
+    let window = |min: Value, max: Value| {
+        findings(&map_scene(
+            json!({ "receiver": "floor", "min_m": min, "max_m": max }),
+        ))
+        .into_iter()
+        .map(|issue| issue.pointer)
+        .collect::<Vec<_>>()
+    };
+    assert!(window(json!([-1, -2]), json!([3, 2])).is_empty());
+    assert!(window(json!([-9, -9]), json!([9, 9])).is_empty());
+    assert!(window(json!([2.9, 1.9]), json!([9, 9])).is_empty());
+    assert_eq!(window(json!([0, 0]), json!([0, 1])), ["/output/max_m/0"]);
+    assert_eq!(window(json!([0, 2]), json!([1, 1])), ["/output/max_m/1"]);
+    assert_eq!(window(json!([3, 0]), json!([9, 9])), ["/output/max_m"]);
+    assert_eq!(window(json!([0, -9]), json!([1, -2])), ["/output/max_m"]);
+    // A corner that is not given is the floor's.
+    assert_eq!(window(json!([3.5, 0]), Value::Null), ["/output/min_m/0"]);
+    assert_eq!(window(Value::Null, json!([0, -2])), ["/output/max_m/1"]);
+    assert!(window(Value::Null, json!([0, 0])).is_empty());
+}
+
+fn mesh(id: &str) -> Arc<Mesh> {
+    Arc::new(Mesh {
+        id: id.to_owned(),
+        origin_m: DVec3::ZERO,
+        min_m: Vec3::ZERO,
+        max_m: Vec3::ONE,
+        triangles: Vec::new(),
+        materials: vec![Material {
+            name: String::new(),
+            albedo: [0.8; 3],
+        }],
+        hierarchy: Vec::new(),
+        warnings: Vec::new(),
+    })
+}
+
+fn resolved(value: Value) -> Result<caustica::scene::ResolvedScene, caustica::scene::SceneError> {
+    let scene = Scene::from_value(value).unwrap();
+    resolve(scene, &Limits::default(), |id| {
+        id.starts_with("blake3:0").then(|| mesh(id))
+    })
+}
+
+#[test]
+fn meshes_are_looked_up_in_the_order_of_the_objects() {
+    let object = |id: &str| json!({ "mesh": id });
+    let scene = with(
+        full(),
+        "/objects",
+        json!([
+            object("blake3:01"),
+            object("blake3:00"),
+            object("blake3:01")
+        ]),
+    );
+    let resolved = resolved(scene).unwrap();
+    let ids: Vec<&str> = resolved
+        .meshes
+        .iter()
+        .map(|mesh| mesh.id.as_str())
+        .collect();
+    assert_eq!(ids, ["blake3:01", "blake3:00", "blake3:01"]);
+}
+
+#[test]
+fn an_unknown_mesh_is_told_from_an_invalid_scene() {
+    let objects =
+        json!([{ "mesh": "blake3:00" }, { "mesh": "blake3:ff" }, { "mesh": "teapot.obj" }]);
+    let error = resolved(with(full(), "/objects", objects.clone())).unwrap_err();
+    assert_eq!(error.kind(), IssueKind::UnknownMesh);
+    let pointers: Vec<&str> = error
+        .issues
+        .iter()
+        .map(|issue| issue.pointer.as_str())
+        .collect();
+    assert_eq!(pointers, ["/objects/1/mesh", "/objects/2/mesh"]);
+    assert!(error.issues[0].detail.contains("blake3:ff"));
+
+    let scene = with(with(full(), "/objects", objects), "/water/ior", json!(9));
+    let error = resolved(scene).unwrap_err();
+    assert_eq!((error.kind(), error.issues.len()), (IssueKind::Invalid, 3));
+
+    let error = resolved(with(full(), "/objects", json!([{ "mesh": "" }]))).unwrap_err();
+    assert_eq!((error.kind(), error.issues.len()), (IssueKind::Invalid, 1));
+}
+
+#[test]
+fn the_hash_is_that_of_the_content() {
+    let hash = |value: Value| resolved(value).unwrap().hash();
+    let first = hash(full());
+    assert!(first.starts_with("blake3:") && first.len() == 71);
+    // Spelling, order and written-out defaults make no difference.
+    let text = serde_json::to_string(&Scene::from_value(full()).unwrap()).unwrap();
+    assert_eq!(hash(serde_json::from_str(&text).unwrap()), first);
+    assert_eq!(hash(with(full(), "/output/width", json!(960.0))), first);
+    // Everything else does.
+    assert_ne!(hash(with(full(), "/time_s", json!(1e-9))), first);
+    assert_ne!(
+        hash(with(full(), "/objects/0/mesh", json!("blake3:01"))),
+        first
+    );
+}
