@@ -1,7 +1,16 @@
-//! Tests that need no adapter. `scene_parse`: JSON to scene and what is said about bad JSON. `scene_validate`: ranges,
-//! references, limits, meshes by id. `scene_overrides`: single fields replaced from outside. `cli`: the command line.
+//! Tests that need no adapter.
+//!
+//! `scene_parse`, `scene_shapes`: JSON to scene, and what is said about bad JSON. `scene_validate`, `scene_output`: ranges,
+//! limits, references. `scene_resolve`: meshes by id. `scene_overrides`: single fields replaced from outside. `cli`,
+//! `cli_scene_file`, `cli_program`: the command line.
 
 mod cli;
+mod cli_program;
+mod cli_scene_file;
+mod folder;
+mod scene_output;
 mod scene_overrides;
 mod scene_parse;
+mod scene_resolve;
+mod scene_shapes;
 mod scene_validate;
