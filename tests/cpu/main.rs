@@ -4,6 +4,12 @@
 //! limits, references. `scene_resolve`: meshes by id. `scene_overrides`: single fields replaced from outside. `cli`,
 //! `cli_scene_file`, `cli_program`: the command line.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(
+    clippy::needless_pass_by_value,
+    reason = "`json!` literals are passed as they are"
+)]
+
 mod cli;
 mod cli_program;
 mod cli_scene_file;

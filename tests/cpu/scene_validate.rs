@@ -72,8 +72,10 @@ fn the_full_scene_is_valid() {
     assert_eq!(findings(&map_scene(json!({ "receiver": 0 }))), []);
 }
 
-/// (pointer, smallest, largest, a bit below, a bit above); the bits are `null` where the type ends there.
-fn ranges() -> Vec<(&'static str, [f64; 2], [Option<f64>; 2])> {
+/// Pointer; smallest and largest accepted; a bit below and a bit above, `None` where the type ends there.
+type RangeRow = (&'static str, [f64; 2], [Option<f64>; 2]);
+
+fn ranges() -> Vec<RangeRow> {
     let both = |a: f64, b: f64| [Some(a), Some(b)];
     vec![
         ("/time_s", [-1e12, 1e12], both(-1.001e12, 1.001e12)),
