@@ -1,5 +1,6 @@
 //! Caustica.
 pub mod accuracy;
+pub mod cli;
 pub mod config;
 pub mod frame;
 pub mod gpu;

@@ -1,1 +1,7 @@
-fn main() {}
+//! The `caustica` program; everything is in [`caustica::cli`].
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    caustica::cli::main()
+}

@@ -5,10 +5,10 @@
 
 use glam::{DVec2, DVec3};
 
-use super::parse::{Issue, SceneError};
+use super::ranges::DEFAULT_MAP_SIDE;
 use super::placement::{LevelBox, ObjectFacts};
 use super::window::{self, Rect, Region};
-use super::{Camera, LayerName, Light, Output, Quality, Receiver, ResolvedScene};
+use super::{Camera, Issue, LayerName, Light, Output, Quality, Receiver, ResolvedScene, SceneError};
 use crate::physics::{fresnel, refraction, sky};
 use crate::stats::Warning;
 use crate::waves::WaterSurface;
@@ -225,8 +225,8 @@ impl SceneFacts {
                         min: map.min_m.map_or(floor.rect.min, to_local),
                         max: map.max_m.map_or(floor.rect.max, to_local),
                     },
-                    width: map.width.unwrap_or(512),
-                    height: map.height.unwrap_or(512),
+                    width: map.width.unwrap_or(DEFAULT_MAP_SIDE),
+                    height: map.height.unwrap_or(DEFAULT_MAP_SIDE),
                 });
                 if map.include_sky {
                     self.map_sky_w_m2 = std::array::from_fn(|c| {
@@ -272,11 +272,11 @@ impl SceneFacts {
                 .map(|(object, mesh)| object.wet.then(|| LevelBox::new(object, mesh, flat, texels)))
                 .collect();
             let window = window::light_window(self, to_light).ok_or_else(|| SceneError {
-                issues: vec![Issue {
-                    pointer: format!("/lights/{index}"),
-                    detail: "the refracted light cannot be followed to the receivers".to_owned(),
-                    accepted: "a sun whose light goes down into the water".to_owned(),
-                }],
+                issues: vec![Issue::invalid(
+                    format!("/lights/{index}"),
+                    "the refracted light cannot be followed to the receivers",
+                    "a sun whose light goes down into the water",
+                )],
             })?;
             self.suns.push(SunFacts {
                 light: light_index,

@@ -1,6 +1,15 @@
 //! Tests that need no adapter.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(
+    clippy::needless_pass_by_value,
+    reason = "`json!` literals are passed as they are"
+)]
+
+mod cli;
+mod cli_program;
+mod cli_scene_file;
+mod folder;
 mod image_exr;
 mod image_metadata;
 mod image_png;
@@ -9,5 +18,11 @@ mod mesh_hierarchy;
 mod mesh_obj;
 mod mesh_store;
 mod project;
+mod scene_output;
+mod scene_overrides;
+mod scene_parse;
+mod scene_resolve;
+mod scene_shapes;
+mod scene_validate;
 mod teapot;
 mod tone;

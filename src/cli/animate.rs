@@ -1,0 +1,139 @@
+//! `caustica animate`: many moments of one scene, one file each.
+//!
+//! Frames are independent: any set of them may be rendered by any process in any order, and a file that is there is whole.
+//! So a range that was cut short is finished by the same command with `--skip-existing`.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::error::CliError;
+use super::frames::{FramePattern, FrameSet};
+use super::scene_flags::SceneArgs;
+use super::{files, picture, scene_file, summary};
+use crate::config::{Limits, RenderConfig};
+use crate::render::Renderer;
+use crate::scene::ResolvedScene;
+
+/// Which frames to render, and where to.
+#[derive(Clone, Debug, Args)]
+pub struct AnimateArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Frames: `0-59`, `1-20:4` (every 4th), `30`, or several joined by commas.
+    #[arg(long, value_name = "RANGES")]
+    pub frames: FrameSet,
+    /// Frames per second: frame f shows the moment time_s + f / fps.
+    #[arg(long, default_value_t = 30.0, value_parser = frame_rate)]
+    pub fps: f64,
+    /// Files to write, with a place for the frame number: `frame.%04d.png`; .png or .exr decides the format.
+    #[arg(short, long, value_name = "PATTERN")]
+    pub output: FramePattern,
+    /// Leave out frames whose file is there.
+    #[arg(long)]
+    pub skip_existing: bool,
+}
+
+/// Reads `--fps`.
+fn frame_rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(fps) if (1e-6..=1e6).contains(&fps) => Ok(fps),
+        _ => Err("accepted: a number, 0.000001 … 1000000".to_owned()),
+    }
+}
+
+/// The moment of a frame, s.
+pub fn time_of(scene_time_s: f64, frame: u32, fps: f64) -> f64 {
+    scene_time_s + f64::from(frame) / fps
+}
+
+/// Renders frames, one after the other, until all are there or one fails.
+///
+/// # Errors
+///
+/// Those of `render`; the frames before the failing one are there.
+pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
+    let start = Instant::now();
+    let frames = args.frames.frames();
+    let any_path = args.output.path(0);
+    let format = files::format_of(&any_path)?;
+    files::check_place(&any_path)?;
+    let mut scene = scene_file::load(&args.scene, Some(format), limits)?;
+    let moments = moments(args, &scene.resolved, limits)?;
+    let missing: Vec<&(u32, f64)> = moments
+        .iter()
+        .filter(|(frame, _)| !(args.skip_existing && is_there(&args.output.path(*frame))))
+        .collect();
+    for note in &scene.notes {
+        eprintln!("note: {note}");
+    }
+    if !missing.is_empty() {
+        let mut renderer = Renderer::new(config)?;
+        let progress = progress(missing.len());
+        for (frame, time_s) in &missing {
+            scene.resolved.scene.time_s = *time_s;
+            let result = one(&mut renderer, &scene.resolved, &args.output.path(*frame));
+            if result.is_err() {
+                progress.abandon();
+                eprintln!("frame {frame} failed");
+            }
+            result?;
+            progress.inc(1);
+        }
+        progress.finish_and_clear();
+    }
+    let skipped = frames.len() - missing.len();
+    let (rendered, elapsed) = (missing.len(), start.elapsed());
+    eprint!("{}", summary::of_animation(rendered, skipped, elapsed));
+    Ok(())
+}
+
+/// Every frame with its moment, checked before the first is rendered.
+fn moments(
+    args: &AnimateArgs,
+    resolved: &ResolvedScene,
+    limits: &Limits,
+) -> Result<Vec<(u32, f64)>, CliError> {
+    let moments: Vec<(u32, f64)> = args
+        .frames
+        .frames()
+        .iter()
+        .map(|&frame| (frame, time_of(resolved.scene.time_s, frame, args.fps)))
+        .collect();
+    // The last is the latest, and nothing but the moment differs.
+    if let Some((_, time_s)) = moments.last() {
+        let mut last = resolved.scene.clone();
+        last.time_s = *time_s;
+        last.validate(limits).map_err(|error| CliError::Scene {
+            file: args.scene.scene.display().to_string(),
+            error,
+        })?;
+    }
+    Ok(moments)
+}
+
+fn is_there(path: &Path) -> bool {
+    path.metadata()
+        .is_ok_and(|metadata| metadata.is_file() && metadata.len() > 0)
+}
+
+fn one(renderer: &mut Renderer, resolved: &ResolvedScene, path: &Path) -> Result<(), CliError> {
+    let picture = picture::make(renderer, resolved, Instant::now())?;
+    files::write_whole(path, &picture.bytes)
+}
+
+/// A bar on stderr, if a person looks at it.
+fn progress(count: usize) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = ProgressBar::new(count as u64).with_style(style);
+    bar.enable_steady_tick(Duration::from_millis(500));
+    bar
+}

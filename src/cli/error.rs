@@ -1,0 +1,119 @@
+//! What can go wrong on the command line, and the exit code it has.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::gpu::GpuError;
+use crate::image::EncodeError;
+use crate::render::RenderError;
+use crate::scene::SceneError;
+
+/// Exit code of failures that are worth a retry.
+pub const EXIT_RETRY: u8 = 1;
+
+/// Exit code of refusals: the same command will fail again.
+pub const EXIT_REFUSED: u8 = 2;
+
+/// Why a command was not done.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// The command line does not make sense.
+    #[error("{0}")]
+    Usage(String),
+    /// The scene file is not a valid scene.
+    #[error("{file}: {error}")]
+    Scene {
+        /// The file.
+        file: String,
+        /// What is wrong with it.
+        error: SceneError,
+    },
+    /// A file cannot be read.
+    #[error("cannot read {path}: {error}")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// A file cannot be written.
+    #[error("cannot write {path}: {error}")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// The frame cannot be rendered.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The GPU failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The frame cannot be made into a file.
+    #[error(transparent)]
+    Encode(#[from] EncodeError),
+    /// The GPU of this machine does not calculate as it should.
+    #[error("the self-check failed: {failed} of {all} checks are outside their tolerance")]
+    SelfCheck {
+        /// Checks that failed.
+        failed: usize,
+        /// All checks.
+        all: usize,
+    },
+    /// The service does not run, or would not accept work.
+    #[error("{url} is not ready: {reason}")]
+    NotReady {
+        /// Where it was asked.
+        url: String,
+        /// What it answered, or why there was no answer.
+        reason: String,
+    },
+    /// The service stopped.
+    #[error("the service stopped: {0}")]
+    Serve(String),
+}
+
+impl CliError {
+    /// A file that cannot be read.
+    pub fn read(path: &Path, error: io::Error) -> Self {
+        Self::Read {
+            path: path.to_owned(),
+            error,
+        }
+    }
+
+    /// A file that cannot be written.
+    pub fn write(path: &Path, error: io::Error) -> Self {
+        Self::Write {
+            path: path.to_owned(),
+            error,
+        }
+    }
+
+    /// [`EXIT_RETRY`] where the same command may succeed later or elsewhere, [`EXIT_REFUSED`] where it cannot.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Usage(_) | Self::Scene { .. } | Self::Encode(_) => EXIT_REFUSED,
+            Self::Read { error, .. } => match error.kind() {
+                io::ErrorKind::NotFound | io::ErrorKind::IsADirectory => EXIT_REFUSED,
+                _ => EXIT_RETRY,
+            },
+            Self::Render(RenderError::Gpu(error)) | Self::Gpu(error) => gpu_exit_code(error),
+            Self::Render(RenderError::Cancelled) => EXIT_RETRY,
+            Self::Render(_) => EXIT_REFUSED,
+            Self::Write { .. }
+            | Self::SelfCheck { .. }
+            | Self::NotReady { .. }
+            | Self::Serve(_) => EXIT_RETRY,
+        }
+    }
+}
+
+/// A call that the driver refused once it refuses again; everything else may pass.
+fn gpu_exit_code(error: &GpuError) -> u8 {
+    match error {
+        GpuError::Validation(_) => EXIT_REFUSED,
+        _ => EXIT_RETRY,
+    }
+}

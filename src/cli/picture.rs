@@ -1,0 +1,50 @@
+//! One frame, from a resolved scene to the bytes of its file.
+
+use std::time::Instant;
+
+use tokio_util::sync::CancellationToken;
+
+use super::error::CliError;
+use crate::image::{Metadata, encode};
+use crate::render::Renderer;
+use crate::scene::ResolvedScene;
+use crate::stats::Stats;
+
+/// A file in memory, and what it cost.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// The bytes of the PNG or EXR file.
+    pub bytes: Vec<u8>,
+    /// Pixels along x and y.
+    pub size: [u32; 2],
+    /// Cost, energy, warnings.
+    pub stats: Stats,
+}
+
+/// Renders and encodes; `start` is when the work for this frame began.
+///
+/// # Errors
+///
+/// [`CliError::Render`] and [`CliError::Encode`].
+pub fn make(
+    renderer: &mut Renderer,
+    resolved: &ResolvedScene,
+    start: Instant,
+) -> Result<Picture, CliError> {
+    let mut frame = renderer.render(resolved, &CancellationToken::new())?;
+    let encode_start = Instant::now();
+    let encoding = resolved.scene.output.encoding();
+    let encoded = encode(&frame, &encoding, &Metadata::of(&frame.stats))?;
+    frame.stats.warnings.extend(encoded.warnings);
+    frame.stats.time_ms.encode = milliseconds_since(encode_start);
+    frame.stats.time_ms.total = milliseconds_since(start);
+    Ok(Picture {
+        bytes: encoded.bytes,
+        size: [frame.width, frame.height],
+        stats: frame.stats,
+    })
+}
+
+fn milliseconds_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}

@@ -1,0 +1,181 @@
+//! A scene file with its meshes, which are paths relative to it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, Read};
+use std::path::{Component, Path};
+
+use super::error::CliError;
+use super::scene_flags::SceneArgs;
+use crate::config::Limits;
+use crate::mesh::MeshStore;
+use crate::scene::parse::read_json;
+use crate::scene::{ImageFormat, Issue, ResolvedScene, Scene, SceneError, overrides, resolve};
+
+/// Marks a mesh that is named by content and not by path.
+const ID_PREFIX: &str = "blake3:";
+
+/// JSON pointer to the file format.
+const FORMAT: &str = "/output/format";
+
+/// A scene that can be rendered.
+#[derive(Clone, Debug)]
+pub struct SceneFile {
+    /// The scene; meshes are named by content id.
+    pub resolved: ResolvedScene,
+    /// What the reader should know about the meshes, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Reads the scene file, replaces fields, reads the meshes, and checks everything.
+///
+/// `format` is what the name of the output file asks for; it wins over the scene.
+///
+/// # Errors
+///
+/// [`CliError::Read`] for the scene file, [`CliError::Scene`] for all that is wrong with it, unreadable meshes included,
+/// [`CliError::Usage`] when `--format` contradicts `format`.
+pub fn load(
+    args: &SceneArgs,
+    format: Option<ImageFormat>,
+    limits: &Limits,
+) -> Result<SceneFile, CliError> {
+    let path = args.scene.as_path();
+    let bytes = read_scene(path)?;
+    let mut changes = args.overrides.0.clone();
+    if let Some(format) = format {
+        changes.push(format_change(format, &changes)?);
+    }
+    let from_bytes = || {
+        let mut value = read_json(&bytes)?;
+        overrides::apply(&mut value, &changes);
+        with_meshes(Scene::from_value(value)?, directory_of(path), limits)
+    };
+    from_bytes().map_err(|error| CliError::Scene {
+        file: path.display().to_string(),
+        error,
+    })
+}
+
+fn read_scene(path: &Path) -> Result<Vec<u8>, CliError> {
+    let read = if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        io::stdin().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        fs::read(path)
+    };
+    read.map_err(|error| CliError::read(path, error))
+}
+
+fn directory_of(path: &Path) -> &Path {
+    path.parent().unwrap_or_else(|| Path::new(""))
+}
+
+/// The change that makes the scene's format that of the file's name.
+fn format_change(
+    format: ImageFormat,
+    changes: &[(String, String)],
+) -> Result<(String, String), CliError> {
+    let word = match format {
+        ImageFormat::Png => "png",
+        ImageFormat::Exr => "exr",
+    };
+    let asked = changes.iter().find(|(pointer, _)| pointer == FORMAT);
+    match asked {
+        Some((_, asked)) if asked.trim() != word => Err(CliError::Usage(format!(
+            "--format {asked} contradicts the name of the output file, which ends in .{word}; leave one of them out"
+        ))),
+        _ => Ok((FORMAT.to_owned(), word.to_owned())),
+    }
+}
+
+/// Puts content ids in the place of paths.
+fn with_meshes(
+    mut scene: Scene,
+    directory: &Path,
+    limits: &Limits,
+) -> Result<SceneFile, SceneError> {
+    let store = MeshStore::new(limits);
+    let mut notes = Vec::new();
+    let mut issues = Vec::new();
+    let mut known: BTreeMap<String, Result<String, String>> = BTreeMap::new();
+    for (index, object) in scene
+        .objects
+        .iter_mut()
+        .take(limits.max_objects)
+        .enumerate()
+    {
+        if object.mesh.is_empty() || object.mesh.starts_with(ID_PREFIX) {
+            continue;
+        }
+        let read = known
+            .entry(object.mesh.clone())
+            .or_insert_with(|| read_mesh(&store, &directory.join(&object.mesh), &mut notes));
+        match read {
+            Ok(id) => object.mesh.clone_from(id),
+            Err(reason) => issues.push(Issue::invalid(
+                format!("/objects/{index}/mesh"),
+                format!("the mesh `{}` cannot be used: {reason}", object.mesh),
+                "the path of an OBJ file, relative to the scene file",
+            )),
+        }
+    }
+    if issues.is_empty() {
+        let resolved = resolve(scene, limits, |id| store.get(id))?;
+        return Ok(SceneFile { resolved, notes });
+    }
+    let others = scene.validate(limits).err();
+    let others = others.map_or_else(Vec::new, |error| error.issues);
+    issues.splice(0..0, others);
+    Err(SceneError { issues })
+}
+
+/// Reads an OBJ file, and the MTL file it names where that lies beside it; gives the mesh's id.
+fn read_mesh(store: &MeshStore, path: &Path, notes: &mut Vec<String>) -> Result<String, String> {
+    let obj = fs::read(path).map_err(|error| error.to_string())?;
+    let mtl = read_material_library(&obj, path, notes);
+    let inserted = store
+        .insert_obj(&obj, mtl.as_deref())
+        .map_err(|error| error.to_string())?;
+    let of_mesh = inserted.mesh.warnings.iter();
+    notes.extend(of_mesh.map(|warning| format!("{}: {}", path.display(), warning.message)));
+    Ok(inserted.mesh.id.clone())
+}
+
+fn read_material_library(obj: &[u8], path: &Path, notes: &mut Vec<String>) -> Option<Vec<u8>> {
+    let name = material_library(obj)?;
+    if !is_plain_name(&name) {
+        notes.push(format!(
+            "{}: the material library `{name}` is not read; accepted: the plain name of a file beside the OBJ",
+            path.display()
+        ));
+        return None;
+    }
+    match fs::read(path.with_file_name(&name)) {
+        Ok(bytes) => Some(bytes),
+        Err(error) => {
+            notes.push(format!(
+                "{}: the material library `{name}` cannot be read: {error}",
+                path.display()
+            ));
+            None
+        }
+    }
+}
+
+/// The name after the first `mtllib`.
+pub fn material_library(obj: &[u8]) -> Option<String> {
+    obj.split(|byte| *byte == b'\n').find_map(|line| {
+        let line = std::str::from_utf8(line).ok()?.trim();
+        let name = line.strip_prefix("mtllib")?;
+        let is_word = name.starts_with(char::is_whitespace);
+        is_word.then(|| name.trim().to_owned())
+    })
+}
+
+/// Whether a name stays in its directory, on every operating system.
+pub fn is_plain_name(name: &str) -> bool {
+    let mut components = Path::new(name).components();
+    let is_one = matches!(components.next(), Some(Component::Normal(_)));
+    is_one && components.next().is_none() && !name.contains(['/', '\\', ':', '\0'])
+}

@@ -1,0 +1,131 @@
+//! What a frame cost, for people.
+
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Duration;
+
+use super::picture::Picture;
+use crate::stats::{AdapterStats, Stats};
+
+/// Where the picture is, and what it cost.
+pub fn of_picture(picture: &Picture, path: &Path, notes: &[String]) -> String {
+    let [width, height] = picture.size;
+    let stats = &picture.stats;
+    let file_bytes = bytes(picture.bytes.len() as u64);
+    let mut rows = vec![
+        row(
+            "picture",
+            format!("{}, {width} × {height}, {file_bytes}", path.display()),
+        ),
+        row("adapter", adapter(&stats.adapter)),
+    ];
+    rows.extend(passes(stats));
+    rows.push(row("time", times(stats)));
+    let memory = &stats.memory;
+    rows.push(row(
+        "memory",
+        format!(
+            "{} at the peak, {} planned, {} allowed",
+            bytes(memory.peak_bytes),
+            bytes(memory.planned_peak_bytes),
+            bytes(memory.budget_bytes)
+        ),
+    ));
+    for account in &stats.energy {
+        let light = format!("light {}: closed to {:.1e}", account.light, account.closure);
+        rows.push(row("energy", light));
+    }
+    for warning in &stats.warnings {
+        let place = warning
+            .pointer
+            .as_ref()
+            .map_or_else(String::new, |pointer| format!(" ({pointer})"));
+        rows.push(row("warning", format!("{}{place}", warning.message)));
+    }
+    rows.extend(notes.iter().map(|note| row("note", note.clone())));
+    columns(&rows, "")
+}
+
+/// How many frames were made.
+pub fn of_animation(rendered: usize, skipped: usize, elapsed: Duration) -> String {
+    let seconds = elapsed.as_secs_f64();
+    format!("{rendered} frames rendered, {skipped} were there, in {seconds:.1} s\n")
+}
+
+fn row(name: &str, text: String) -> Vec<String> {
+    vec![name.to_owned(), text]
+}
+
+/// An adapter in one line.
+pub fn adapter(adapter: &AdapterStats) -> String {
+    let AdapterStats {
+        name,
+        backend,
+        driver,
+        software,
+    } = adapter;
+    let software = if *software {
+        ", software: a CPU does the work"
+    } else {
+        ""
+    };
+    format!("{name} ({backend}, {driver}{software})")
+}
+
+fn passes(stats: &Stats) -> Vec<Vec<String>> {
+    let names: Vec<Vec<String>> = stats
+        .passes
+        .iter()
+        .map(|pass| {
+            let time = match pass.gpu_ms {
+                Some(gpu_ms) => format!("{gpu_ms:.2} ms"),
+                None => "not timed".to_owned(),
+            };
+            vec![pass.name.clone(), format!("{} ×", pass.runs), time]
+        })
+        .collect();
+    columns(&names, "")
+        .lines()
+        .map(|line| row("pass", line.to_owned()))
+        .collect()
+}
+
+fn times(stats: &Stats) -> String {
+    let time = &stats.time_ms;
+    format!(
+        "{:.0} ms: plan {:.1}, upload {:.1}, gpu {:.1}, readback {:.1}, encode {:.1}",
+        time.total, time.plan, time.upload, time.gpu, time.readback, time.encode
+    )
+}
+
+/// A size with the unit that suits it.
+pub fn bytes(count: u64) -> String {
+    const UNITS: [(&str, u64); 3] = [("GiB", 1 << 30), ("MiB", 1 << 20), ("KiB", 1 << 10)];
+    for (unit, size) in UNITS {
+        if count >= size {
+            return format!("{:.1} {unit}", count as f64 / size as f64);
+        }
+    }
+    format!("{count} B")
+}
+
+/// Rows with their columns aligned, each after `indent`.
+pub fn columns(rows: &[Vec<String>], indent: &str) -> String {
+    let width_of = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column));
+        cells
+            .map(|cell| cell.chars().count())
+            .max()
+            .unwrap_or_default()
+    };
+    let mut text = String::new();
+    for row in rows {
+        let mut line = indent.to_owned();
+        for (column, cell) in row.iter().enumerate() {
+            let width = width_of(column);
+            let _ = write!(line, "{cell:width$}  ");
+        }
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    text
+}

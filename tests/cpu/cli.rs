@@ -1,0 +1,315 @@
+//! The command line: what may be typed, frame ranges and file patterns, and what is printed.
+
+use std::path::Path;
+
+use caustica::cli::args::Command;
+use caustica::cli::frames::{FramePattern, FrameSet};
+use caustica::cli::health::ServiceUrl;
+use caustica::cli::{Cli, animate, plan, selfcheck, summary};
+use caustica::config::AdapterPolicy;
+use caustica::plan::{Plan, PlannedPass, PlannedSlot};
+use caustica::render::{SelfCheck, SelfCheckItem};
+use caustica::scene::overrides::fields;
+use caustica::stats::AbsentPass;
+use clap::{CommandFactory, Parser};
+
+fn parsed(words: &[&str]) -> Result<Cli, clap::Error> {
+    Cli::try_parse_from(std::iter::once("caustica").chain(words.iter().copied()))
+}
+
+#[test]
+fn the_definition_is_consistent() {
+    Cli::command().debug_assert();
+}
+
+#[test]
+fn every_field_has_a_flag_in_every_command_that_reads_a_scene() {
+    for name in ["render", "animate", "plan"] {
+        let mut root = Cli::command();
+        let command = root.find_subcommand_mut(name).unwrap();
+        let help = command.render_long_help().to_string();
+        for field in fields() {
+            assert!(
+                help.contains(&format!("--{} <VALUE", field.flag())),
+                "{name} --{}",
+                field.flag()
+            );
+            assert!(
+                help.contains(&field.help[..20.min(field.help.len())]),
+                "{name} --{}",
+                field.flag()
+            );
+        }
+    }
+    for name in ["serve", "health", "selfcheck"] {
+        let mut root = Cli::command();
+        let help = root
+            .find_subcommand_mut(name)
+            .unwrap()
+            .render_long_help()
+            .to_string();
+        assert!(!help.contains("--water-cells"), "{name}");
+    }
+}
+
+#[test]
+fn flags_become_overrides() {
+    let words = [
+        "render",
+        "s.json",
+        "-o",
+        "x.exr",
+        "--water-cells",
+        "512",
+        "--exposure-ev",
+        "-1",
+        "--layers",
+        "radiance,depth",
+        "--min-m",
+        "-1,-2",
+        "--adapter",
+        "software",
+        "--max-pixels",
+        "77",
+    ];
+    let cli = parsed(&words).unwrap();
+    assert_eq!(cli.render.adapter, AdapterPolicy::Software);
+    assert_eq!(cli.limits.max_pixels, 77);
+    let Command::Render(args) = cli.command else {
+        panic!("render was typed");
+    };
+    assert_eq!(args.output, Path::new("x.exr"));
+    let mut given = args.scene.overrides.0;
+    given.sort();
+    let owned = |(pointer, text): (&str, &str)| (pointer.to_owned(), text.to_owned());
+    let expected = [
+        ("/output/exposure_ev", "-1"),
+        ("/output/layers", "radiance,depth"),
+        ("/output/min_m", "-1,-2"),
+        ("/quality/water_cells", "512"),
+    ];
+    assert_eq!(given, expected.map(owned));
+}
+
+#[test]
+fn command_lines_that_make_no_sense_are_refused() {
+    let table: &[&[&str]] = &[
+        &[],
+        &["paint"],
+        &["render"],
+        &["render", "s.json"],
+        &["render", "s.json", "-o"],
+        &["render", "s.json", "-o", "x.png", "--water-depth", "3"],
+        &[
+            "render", "s.json", "-o", "x.png", "--width", "3", "--width", "4",
+        ],
+        &["animate", "s.json", "-o", "x.%04d.png"],
+        &["animate", "s.json", "-o", "x.png", "--frames", "0-3"],
+        &["animate", "s.json", "-o", "x.%d.png", "--frames", "3-0"],
+        &[
+            "animate", "s.json", "-o", "x.%d.png", "--frames", "0", "--fps", "0",
+        ],
+        &[
+            "animate", "s.json", "-o", "x.%d.png", "--frames", "0", "--fps", "nan",
+        ],
+        &[
+            "animate", "s.json", "-o", "x.%d.png", "--frames", "0", "--fps", "-30",
+        ],
+        &["health", "--url", "https://localhost:8080"],
+        &["health", "--timeout-s", "0"],
+        &["selfcheck", "--adapter", "quantum"],
+        &["serve", "--listen", "nowhere"],
+    ];
+    for words in table {
+        let error = parsed(words).map(|_| ()).expect_err(&format!("{words:?}"));
+        assert_eq!(error.exit_code(), 2, "{words:?}");
+    }
+}
+
+#[test]
+fn frame_ranges_are_read() {
+    let table: &[(&str, &[u32])] = &[
+        ("30", &[30]),
+        ("0-3", &[0, 1, 2, 3]),
+        ("1-20:4", &[1, 5, 9, 13, 17]),
+        ("1-20:4,30", &[1, 5, 9, 13, 17, 30]),
+        ("5,1-3,2", &[1, 2, 3, 5]),
+        (" 7 , 3-3 ", &[3, 7]),
+        ("4294967295", &[u32::MAX]),
+        ("4294967290-4294967295:9", &[4_294_967_290]),
+    ];
+    for (text, frames) in table {
+        assert_eq!(
+            text.parse::<FrameSet>().unwrap().frames(),
+            *frames,
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn bad_frame_ranges_are_refused_with_what_is_accepted() {
+    for text in [
+        "",
+        ",",
+        "1,",
+        "a",
+        "-1",
+        "1-",
+        "-",
+        "1-2-3",
+        "3-1",
+        "1-5:0",
+        "1-5:",
+        "1:2",
+        "+3",
+        "1.5",
+        "4294967296",
+        "0x10",
+        "0-4000000000",
+    ] {
+        let error = text.parse::<FrameSet>().expect_err(text);
+        assert!(error.to_string().contains("accepted"), "{text}: {error}");
+    }
+}
+
+#[test]
+fn patterns_hold_the_number_once() {
+    let table = [
+        ("frame.%04d.png", 7, "frame.0007.png"),
+        ("frame.%04d.png", 123_456, "frame.123456.png"),
+        ("out/%d.exr", 0, "out/0.exr"),
+        ("out dir/a%06db.exr", 12, "out dir/a000012b.exr"),
+    ];
+    for (pattern, frame, path) in table {
+        let pattern: FramePattern = pattern.parse().unwrap();
+        assert_eq!(pattern.path(frame), Path::new(path));
+    }
+    for text in [
+        "",
+        "frame.png",
+        "%d%d.png",
+        "%04d/%04d.png",
+        "%4d.png",
+        "%00d.png",
+        "%099d.png",
+        "%s.png",
+        "%",
+        "%0",
+        "%04x.png",
+        "%03d/frame.png",
+    ] {
+        let error = text.parse::<FramePattern>().expect_err(text);
+        assert!(
+            error.to_string().contains("frame.%04d.png"),
+            "{text}: {error}"
+        );
+    }
+}
+
+#[test]
+fn frames_lie_one_period_apart() {
+    assert_eq!(animate::time_of(2.0, 0, 30.0), 2.0);
+    assert_eq!(animate::time_of(2.0, 45, 30.0), 3.5);
+    assert_eq!(animate::time_of(-1.0, 1, 0.5), 1.0);
+}
+
+#[test]
+fn service_urls_are_plain_http() {
+    let table = [
+        ("http://127.0.0.1:8080", "127.0.0.1:8080", ""),
+        ("http://caustica", "caustica:80", ""),
+        ("http://[::1]:8080/", "[::1]:8080", ""),
+        ("http://[::1]", "[::1]:80", ""),
+        ("http://host:81/a/b/", "host:81", "/a/b"),
+    ];
+    for (text, authority, prefix) in table {
+        let url: ServiceUrl = text.parse().unwrap();
+        assert_eq!(
+            (url.authority.as_str(), url.prefix.as_str()),
+            (authority, prefix),
+            "{text}"
+        );
+    }
+    for text in [
+        "",
+        "localhost",
+        "https://x",
+        "http://",
+        "http://:80",
+        "http://x:port",
+        "http://x:99999",
+        "http://u@x",
+        "http://x/?q",
+        "http://x/a b",
+        "http://x/\r\nHost: y",
+    ] {
+        assert!(text.parse::<ServiceUrl>().is_err(), "{text}");
+    }
+}
+
+#[test]
+fn a_selfcheck_that_checks_nothing_has_not_passed() {
+    let item = |passed| SelfCheckItem {
+        name: "fresnel".to_owned(),
+        error: 1e-7,
+        tolerance: 1e-6,
+        passed,
+    };
+    let check = |passed, checks| SelfCheck { passed, checks };
+    assert!(selfcheck::verdict(&check(true, vec![item(true)])).is_ok());
+    for bad in [
+        check(true, vec![]),
+        check(false, vec![item(true)]),
+        check(true, vec![item(true), item(false)]),
+    ] {
+        assert_eq!(selfcheck::verdict(&bad).unwrap_err().exit_code(), 1);
+    }
+    let text = selfcheck::in_words(&check(false, vec![item(true), item(false)]));
+    assert_eq!(
+        text,
+        "ok      fresnel  error 1.0e-7 of 1.0e-6\nFAILED  fresnel  error 1.0e-7 of 1.0e-6\n"
+    );
+}
+
+#[test]
+fn a_plan_reads_well() {
+    let plan = Plan {
+        passes: vec![PlannedPass {
+            name: "surface".to_owned(),
+            reason: "beams read it".to_owned(),
+            runs: 2,
+        }],
+        absent: vec![AbsentPass {
+            name: "level_map".to_owned(),
+            reason: "no objects".to_owned(),
+        }],
+        slots: vec![PlannedSlot {
+            name: "water".to_owned(),
+            bytes: 3 << 20,
+            holds: "height, m".to_owned(),
+        }],
+        peak_bytes: 1536,
+        warnings: Vec::new(),
+    };
+    assert_eq!(
+        plan::in_words(&plan),
+        "Passes\n  surface  2 ×  beams read it\n\n\
+         Not needed\n  level_map  no objects\n\n\
+         Memory\n  water  3.0 MiB  height, m\n\n\
+         Peak: 1.5 KiB\n"
+    );
+}
+
+#[test]
+fn sizes_have_the_unit_that_suits_them() {
+    let table = [
+        (0, "0 B"),
+        (1023, "1023 B"),
+        (1024, "1.0 KiB"),
+        (5 << 30, "5.0 GiB"),
+    ];
+    for (count, text) in table {
+        assert_eq!(summary::bytes(count), text);
+    }
+}

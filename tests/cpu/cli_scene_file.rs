@@ -1,0 +1,212 @@
+//! Scene files: meshes and material libraries beside them, fields replaced by flags, and the files that are written.
+
+use std::fs;
+use std::path::Path;
+
+use caustica::cli::scene_file::{is_plain_name, load, material_library};
+use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
+use caustica::cli::{CliError, files};
+use caustica::config::Limits;
+use caustica::scene::{ImageFormat, Issue};
+
+use super::folder::{Folder, TRIANGLE, scene_text};
+
+fn scene_args(path: &Path, overrides: &[(&str, &str)]) -> SceneArgs {
+    let owned = |(pointer, text): &(&str, &str)| ((*pointer).to_owned(), (*text).to_owned());
+    SceneArgs {
+        scene: path.to_owned(),
+        overrides: SceneOverrides(overrides.iter().map(owned).collect()),
+    }
+}
+
+fn issues(error: CliError) -> Vec<Issue> {
+    match error {
+        CliError::Scene { error, .. } => error.issues,
+        other => panic!("not a scene error: {other}"),
+    }
+}
+
+#[test]
+fn a_scene_file_is_read_with_its_meshes() {
+    let folder = Folder::new();
+    folder.write("meshes/a.obj", TRIANGLE);
+    let scene = folder.write("scene.json", &scene_text("meshes/a.obj"));
+    let limits = Limits::default();
+    let loaded = load(&scene_args(&scene, &[]), None, &limits).unwrap();
+    let id = loaded.resolved.scene.objects[0].mesh.clone();
+    assert!(id.starts_with("blake3:"), "{id}");
+    assert_eq!(loaded.resolved.meshes[0].id, id);
+
+    // The path is not part of the scene's hash, the content is.
+    folder.write("elsewhere.obj", TRIANGLE);
+    let moved = folder.write("moved.json", &scene_text("elsewhere.obj"));
+    let moved = load(&scene_args(&moved, &[]), None, &limits).unwrap();
+    assert_eq!(moved.resolved.hash(), loaded.resolved.hash());
+    folder.write("elsewhere.obj", &TRIANGLE.replace("v 1 0 0", "v 2 0 0"));
+    let moved = folder.write("moved.json", &scene_text("elsewhere.obj"));
+    let changed = load(&scene_args(&moved, &[]), None, &limits).unwrap();
+    assert_ne!(changed.resolved.hash(), loaded.resolved.hash());
+}
+
+#[test]
+fn a_material_library_is_read_only_beside_its_mesh() {
+    let folder = Folder::new();
+    let limits = Limits::default();
+    let hash = |mesh: &str| {
+        let scene = folder.write("scene.json", &scene_text(mesh));
+        let loaded = load(&scene_args(&scene, &[]), None, &limits).unwrap();
+        (loaded.resolved.hash(), loaded.notes.join("\n"))
+    };
+    folder.write("secret.mtl", "newmtl red\nKd 1 0 0\n");
+    folder.write("m/near.mtl", "newmtl red\nKd 1 0 0\n");
+    folder.write("m/near.obj", &format!("mtllib near.mtl\n{TRIANGLE}"));
+    folder.write("m/far.obj", &format!("mtllib ../secret.mtl\n{TRIANGLE}"));
+    folder.write("m/gone.obj", &format!("mtllib gone.mtl\n{TRIANGLE}"));
+    let (near, _) = hash("m/near.obj");
+    assert!(hash("m/far.obj").1.contains("`../secret.mtl` is not read"));
+    assert!(hash("m/gone.obj").1.contains("`gone.mtl` cannot be read"));
+    folder.write("m/near.mtl", "newmtl red\nKd 0 1 0\n");
+    assert_ne!(
+        hash("m/near.obj").0,
+        near,
+        "the material is part of the mesh"
+    );
+    let far = hash("m/far.obj").0;
+    folder.write("secret.mtl", "newmtl red\nKd 0 1 0\n");
+    assert_eq!(hash("m/far.obj").0, far);
+}
+
+#[test]
+fn material_libraries_are_found_and_judged_by_name() {
+    let table: &[(&str, Option<&str>)] = &[
+        ("v 0 0 0\nmtllib a.mtl\nmtllib b.mtl", Some("a.mtl")),
+        ("  mtllib\ttwo words.mtl \r\n", Some("two words.mtl")),
+        ("# mtllib a.mtl\nmtllibx a.mtl\n", None),
+        ("", None),
+    ];
+    for (obj, name) in table {
+        assert_eq!(material_library(obj.as_bytes()).as_deref(), *name, "{obj}");
+    }
+    for name in ["a.mtl", "two words.mtl", ".hidden"] {
+        assert!(is_plain_name(name), "{name}");
+    }
+    for name in [
+        "", ".", "..", "../a", "a/b", "/a", "a\\b", "C:a", "a/", "./a", "a\0b",
+    ] {
+        assert!(!is_plain_name(name), "{name}");
+    }
+}
+
+#[test]
+fn unreadable_meshes_are_findings_beside_the_others() {
+    let folder = Folder::new();
+    folder.write("empty.obj", "");
+    let text = r#"{ "water": { "ior": 9 }, "floor": { "depth_m": 2, "size_m": [4, 4] },
+        "objects": [{ "mesh": "gone.obj" }, { "mesh": "empty.obj" }, { "mesh": "" }],
+        "output": { "kind": "irradiance_map", "receiver": "floor" } }"#;
+    let scene = folder.write("scene.json", text);
+    let found = issues(load(&scene_args(&scene, &[]), None, &Limits::default()).unwrap_err());
+    let pointers: Vec<&str> = found.iter().map(|issue| issue.pointer.as_str()).collect();
+    assert_eq!(
+        pointers,
+        [
+            "/water/ior",
+            "/objects/2/mesh",
+            "/objects/0/mesh",
+            "/objects/1/mesh"
+        ]
+    );
+    assert!(found[2].accepted.contains("relative to the scene file"));
+
+    let scene = folder.write("id.json", &scene_text("blake3:00"));
+    let found = issues(load(&scene_args(&scene, &[]), None, &Limits::default()).unwrap_err());
+    assert_eq!(found[0].pointer, "/objects/0/mesh");
+}
+
+#[test]
+fn overrides_are_judged_like_the_scene() {
+    let folder = Folder::new();
+    folder.write("a.obj", TRIANGLE);
+    let scene = folder.write("scene.json", &scene_text("a.obj"));
+    let limits = Limits::default();
+    let good = load(
+        &scene_args(&scene, &[("/output/width", "8")]),
+        None,
+        &limits,
+    )
+    .unwrap();
+    assert_eq!(
+        serde_json::to_value(&good.resolved.scene).unwrap()["output"]["width"],
+        8
+    );
+    for (pointer, text) in [
+        ("/output/width", "0"),
+        ("/output/width", "wide"),
+        ("/output/layers", "depth"),
+        ("/quality/water_cells", "1"),
+        ("/output/format", "jpg"),
+    ] {
+        let error = load(&scene_args(&scene, &[(pointer, text)]), None, &limits).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert_eq!(issues(error)[0].pointer, pointer);
+    }
+}
+
+#[test]
+fn the_name_of_the_file_decides_the_format() {
+    let folder = Folder::new();
+    folder.write("a.obj", TRIANGLE);
+    let scene = folder.write("scene.json", &scene_text("a.obj"));
+    let limits = Limits::default();
+    let format = |asked: &[(&str, &str)], name: &str| {
+        let format = files::format_of(Path::new(name))?;
+        let loaded = load(&scene_args(&scene, asked), Some(format), &limits)?;
+        Ok::<_, CliError>(loaded.resolved.scene.output.encoding().format)
+    };
+    assert_eq!(format(&[], "x.png").unwrap(), ImageFormat::Png);
+    assert_eq!(format(&[], "x.tar.EXR").unwrap(), ImageFormat::Exr);
+    assert_eq!(
+        format(&[("/output/format", "png")], "x.png").unwrap(),
+        ImageFormat::Png
+    );
+    let error = format(&[("/output/format", "exr")], "x.png").unwrap_err();
+    assert!(matches!(error, CliError::Usage(_)), "{error}");
+    for name in ["x", "x.jpg", ".png", "png", "x.png.bak"] {
+        let error = files::format_of(Path::new(name)).unwrap_err();
+        assert!(error.to_string().contains(".png or .exr"), "{error}");
+        assert_eq!(error.exit_code(), 2);
+    }
+}
+
+#[test]
+fn files_are_written_whole_and_leave_nothing_beside_them() {
+    let folder = Folder::new();
+    let path = folder.write("x.png", "old");
+    files::write_whole(&path, b"new").unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"new");
+    assert_eq!(folder.names(), ["x.png"]);
+
+    fs::create_dir(folder.0.join("taken.png")).unwrap();
+    let error = files::write_whole(&folder.0.join("taken.png"), b"new").unwrap_err();
+    assert_eq!(error.exit_code(), 1);
+    assert_eq!(
+        folder.names(),
+        ["taken.png", "x.png"],
+        "no half file is left"
+    );
+
+    assert_eq!(
+        files::check_place(&folder.0.join("taken.png"))
+            .unwrap_err()
+            .exit_code(),
+        2
+    );
+    assert_eq!(
+        files::check_place(&folder.0.join("no/x.png"))
+            .unwrap_err()
+            .exit_code(),
+        2
+    );
+    files::check_place(&folder.0.join("y.png")).unwrap();
+    files::check_place(Path::new("y.png")).unwrap();
+}

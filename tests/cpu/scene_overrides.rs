@@ -1,0 +1,151 @@
+//! Fields replaced from outside: which there are, and how their text becomes JSON.
+
+use caustica::scene::overrides::{Field, apply, fields};
+use caustica::scene::{Output, Scene};
+use serde_json::{Value, json};
+
+fn overridden(mut value: Value, overrides: &[(&str, &str)]) -> Value {
+    let overrides: Vec<(String, String)> = overrides
+        .iter()
+        .map(|(pointer, text)| ((*pointer).to_owned(), (*text).to_owned()))
+        .collect();
+    apply(&mut value, &overrides);
+    value
+}
+
+fn field(name: &str) -> Field {
+    let found = fields().into_iter().find(|field| field.name == name);
+    found.unwrap_or_else(|| panic!("no field {name}"))
+}
+
+#[test]
+fn every_serialised_field_of_quality_and_output_is_there_once() {
+    let map = json!({ "output": {
+        "kind": "irradiance_map", "receiver": "floor", "min_m": [0, 0], "max_m": [1, 1], "width": 1, "height": 1, "light": 0
+    } });
+    let view = Scene::from_value(json!({})).unwrap();
+    let map = Scene::from_value(map).unwrap();
+    let mut pointers = Vec::new();
+    for scene in [view, map] {
+        let value = serde_json::to_value(&scene).unwrap();
+        for section in ["quality", "output"] {
+            for name in value[section].as_object().unwrap().keys() {
+                pointers.push(format!("/{section}/{name}"));
+            }
+        }
+    }
+    pointers.sort();
+    pointers.dedup();
+    let mut known: Vec<String> = fields().into_iter().map(|field| field.pointer).collect();
+    known.sort();
+    assert_eq!(known, pointers);
+    assert!(known.len() >= 20, "{known:?}");
+}
+
+#[test]
+fn fields_carry_their_documentation() {
+    for field in fields() {
+        assert!(field.help.len() > 10, "{field:?}");
+    }
+    let cells = field("water_cells");
+    assert_eq!(cells.flag(), "water-cells");
+    assert!(cells.help.contains("2 … 2048"), "{}", cells.help);
+    assert_eq!(field("format").words, ["png", "exr"]);
+    assert_eq!(field("tone_curve").words, ["clip", "pbr_neutral"]);
+    assert!(field("layers").words.contains(&"depth".to_owned()));
+    assert_eq!(field("kind").words, ["view", "irradiance_map"]);
+    let lists: Vec<String> = fields()
+        .into_iter()
+        .filter(|f| f.is_list)
+        .map(|f| f.name)
+        .collect();
+    assert_eq!(lists, ["layers", "max_m", "min_m"]);
+}
+
+#[test]
+fn texts_become_json_of_the_right_type() {
+    let out = overridden(
+        json!({ "output": { "kind": "view", "width": 3 }, "quality": {} }),
+        &[
+            ("/output/width", "1920"),
+            ("/output/format", "exr"),
+            ("/output/layers", "radiance, depth"),
+            ("/output/exposure_ev", "-.5"),
+            ("/output/include_sky", "true"),
+            ("/output/min_m", "-1,2e0"),
+            ("/output/receiver", "floor"),
+            ("/quality/water_cells", "64"),
+        ],
+    );
+    assert_eq!(
+        out,
+        json!({
+            "output": {
+                "kind": "view", "width": 1920, "format": "exr", "layers": ["radiance", "depth"], "exposure_ev": -0.5,
+                "include_sky": true, "min_m": [-1, 2.0], "receiver": "floor"
+            },
+            "quality": { "water_cells": 64 }
+        })
+    );
+}
+
+#[test]
+fn a_single_layer_is_still_a_list() {
+    let out = overridden(json!({}), &[("/output/layers", "depth")]);
+    assert_eq!(out["output"]["layers"], json!(["depth"]));
+}
+
+#[test]
+fn missing_sections_are_made() {
+    for start in [json!({}), json!({ "output": null, "quality": null })] {
+        let out = overridden(
+            start,
+            &[("/output/width", "7"), ("/quality/split_levels", "0")],
+        );
+        let Output::View(view) = Scene::from_value(out).unwrap().output else {
+            panic!("a missing output is a view");
+        };
+        assert_eq!(view.width, 7);
+    }
+}
+
+#[test]
+fn the_kind_is_put_in_first() {
+    let out = overridden(
+        json!({}),
+        &[
+            ("/output/receiver", "floor"),
+            ("/output/kind", "irradiance_map"),
+        ],
+    );
+    assert!(matches!(
+        Scene::from_value(out).unwrap().output,
+        Output::IrradianceMap(_)
+    ));
+}
+
+#[test]
+fn bad_values_are_refused_by_the_reading() {
+    for (pointer, text) in [
+        ("/output/width", "wide"),
+        ("/output/width", "-1"),
+        ("/output/width", "1e10"),
+        ("/output/width", ""),
+        ("/output/width", "nan"),
+        ("/output/width", "inf"),
+        ("/output/format", "jpg"),
+        ("/quality/method", "magic"),
+        ("/output/receiver", "floor"),
+    ] {
+        let out = overridden(json!({}), &[(pointer, text)]);
+        let error = Scene::from_value(out).expect_err(text);
+        assert_eq!(error.issues[0].pointer, pointer, "{text}: {error}");
+    }
+}
+
+#[test]
+fn what_is_no_object_is_left_for_the_reading_to_refuse() {
+    for start in [json!([]), json!(null), json!(3), json!({ "output": 3 })] {
+        assert_eq!(overridden(start.clone(), &[("/output/width", "7")]), start);
+    }
+}
