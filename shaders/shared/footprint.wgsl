@@ -117,8 +117,8 @@ fn deposit_triangle(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_f
     for (var y = first.y; y <= last.y; y++) {
         let row = cell_bounds(y, size.y, base.y, lo.y, hi.y);
         let edges = clip_to_row(p, q, r, row.x, row.y);
-        let column_first = max(i32(floor(row_low(edges) + base.x)), first.x);
-        let column_last = min(i32(floor(row_high(edges) + base.x)), last.x);
+        let column_first = clamp(i32(floor(row_low(edges) + base.x)), first.x, last.x);
+        let column_last = clamp(i32(floor(row_high(edges) + base.x)), first.x, last.x);
         let start = cell_bounds(column_first, size.x, base.x, lo.x, hi.x).x;
         let near = moved(edges, start);
         var right = area_right_of(near, 0.0);

@@ -24,7 +24,7 @@ fn smoke() {
        {"kind":"sine","amplitude_m":0.015,"wavelength_m":0.8,"direction_deg":100,"phase_deg":97.40282517223995},
        {"kind":"sine","amplitude_m":0.006,"wavelength_m":0.5,"direction_deg":-35,"phase_deg":166.15776058793872}]},
       "output":{"kind":"irradiance_map","receiver":"floor","min_m":[-1,-1],"max_m":[1,1],"width":256,"height":256}}"#;
-    for cells in [64, 128, 256, 512, 1024] {
+    for cells in [16,64, 128, 256, 512, 1024] {
         let mut scene: Scene = serde_json::from_str(sine).unwrap();
         scene.quality.water_cells = cells;
         let resolved = ResolvedScene { scene, meshes: vec![] };
@@ -35,7 +35,7 @@ fn smoke() {
                 println!("{cells}: closure {} {:?}", frame.stats.energy[0].closure, frame.stats.time_ms);
                 println!("{:?}", frame.stats.passes.iter().map(|p| (p.name.as_str(), p.gpu_ms)).collect::<Vec<_>>());
                 let max = e.iter().fold(0.0f32, |a, b| a.max(*b));
-                println!("max {max}");
+                println!("max {max} {:?}", frame.stats.energy);
                 std::fs::write(format!("/tmp/sine_{cells}.f32"), bytemuck::cast_slice(e)).unwrap();
             }
         }
