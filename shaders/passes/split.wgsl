@@ -1,5 +1,5 @@
 // Split — beams whose corners end on different receivers are halved `split_levels` times along each side, with rays of their
-// own. One workgroup per straddling beam of the grid.
+// own. Workgroups stride over the straddling beams of the grid.
 #import "lib/turns.wgsl"
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
@@ -15,10 +15,9 @@
 #import "shared/footprint.wgsl"
 #import "shared/beam_triangle.wgsl"
 #import "shared/account.wgsl"
+#import "shared/queue.wgsl"
 
 @group(0) @binding(6) var<storage, read> split_queue: array<u32>;
-
-const QUEUE_HEAD: u32 = 3u;
 
 // Corner `k` of the beam, in cells; the same triangles as in shared/grid_beam.wgsl.
 fn beam_corner(cell: vec2u, half: u32, k: u32) -> vec2f {
@@ -49,34 +48,41 @@ fn split_beam(corners: mat3x2f) -> Beam {
     return b;
 }
 
-@compute @workgroup_size(64)
-fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
-    let beam_index = split_queue[QUEUE_HEAD + group.x];
-    let cell_index = beam_index >> 1u;
-    let cell = vec2u(cell_index % light.cells, cell_index / light.cells);
-    let half = beam_index & 1u;
-    let c0 = beam_corner(cell, half, 0u);
+// One of the small triangles of a beam.
+fn split_part(cell: vec2u, half: u32, n: u32) -> Losses {
     let side = 1u << light.split_levels;
+    let c0 = beam_corner(cell, half, 0u);
     let e1 = (beam_corner(cell, half, 1u) - c0) / f32(side);
     let e2 = (beam_corner(cell, half, 2u) - c0) / f32(side);
     // Row r of the divided triangle holds 2 (side − r) − 1 small ones; n counts them through: n = r (2 side − r) + k.
-    let count = side * side;
-    for (var n = invocation; n < count; n += 64u) {
-        let row = side - 1u - u32(floor(sqrt(f32(count - 1u - n) + 0.5)));
-        let k = n - row * (2u * side - row);
-        let base = c0 + e1 * f32(k >> 1u) + e2 * f32(row);
-        var corners = mat3x2f(base, base + e1, base + e2);
-        if (k & 1u) == 1u { corners = mat3x2f(base + e1, base + e1 + e2, base + e2); }
-        let b = split_beam(corners);
-        if b.transmitted_m2 == 0.0 { continue; }
-        if !is_whole(b) {
-            note_losses(deposit_torn(b));
-        } else if b.receiver.x == NO_RECEIVER {
-            note_term(TERM_MISSED, b.transmitted_m2);
-        } else {
-            note_losses(deposit_whole(b));
+    let row = side - 1u - u32(floor(sqrt(f32(side * side - 1u - n) + 0.5)));
+    let k = n - row * (2u * side - row);
+    let base = c0 + e1 * f32(k >> 1u) + e2 * f32(row);
+    var corners = mat3x2f(base, base + e1, base + e2);
+    if (k & 1u) == 1u { corners = mat3x2f(base + e1, base + e1 + e2, base + e2); }
+    let b = split_beam(corners);
+    if b.transmitted_m2 == 0.0 { return Losses(0.0, vec3f(0.0), vec3f(0.0)); }
+    if !is_whole(b) { return deposit_torn(b); }
+    if b.receiver.x == NO_RECEIVER { return Losses(b.transmitted_m2, vec3f(0.0), vec3f(0.0)); }
+    return deposit_whole(b);
+}
+
+@compute @workgroup_size(64)
+fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    let count = split_queue[QUEUE_COUNT];
+    var sums = Losses(0.0, vec3f(0.0), vec3f(0.0));
+    for (var item = group.x; item < count; item += groups.x) {
+        let beam_index = split_queue[QUEUE_HEAD + item];
+        let cell_index = beam_index >> 1u;
+        let cell = vec2u(cell_index % light.cells, cell_index / light.cells);
+        for (var n = invocation; n < (1u << (2u * light.split_levels)); n += 64u) {
+            let losses = split_part(cell, beam_index & 1u, n);
+            sums.missed += losses.missed;
+            sums.extinguished += losses.extinguished;
+            sums.left += losses.left;
         }
     }
+    note_losses(sums);
     workgroupBarrier();
     flush_account(invocation);
 }

@@ -1,5 +1,10 @@
-// Sums of flux as 64-bit fixed point in pairs of u32 (low, high): integer additions commute, so the same request gives the
-// same bytes, and the high word cannot run over (2³¹ counts at most per deposit, fewer than 2³² deposits).
+// Sums of flux as fixed point: integer additions commute, so the same request gives the same bytes.
+//
+// One u32 per texel and channel holds 1024 times the flux of an evenly lit texel. Where a focus passes that, the sum wraps, what
+// landed is short by a whole 2³² counts, the host sees it in the energy account and runs the sun again with WIDE_SUMS: 64 bits
+// in two words, which nothing can fill (2³⁰ counts at most per deposit).
+
+override WIDE_SUMS: bool = false;
 
 @group(0) @binding(4) var<storage, read_write> flux: array<atomic<u32>>;
 @group(0) @binding(5) var<storage, read_write> energy: array<atomic<u32>>;
@@ -11,19 +16,25 @@ const TERM_MISSED: u32 = 2u;
 const TERM_EXTINGUISHED: u32 = 3u;
 const TERM_LEFT: u32 = 6u;
 const TERM_LANDED: u32 = 9u;
-const TERM_OVERFLOWS: u32 = 12u; // deposits too large for the fixed point: an error if it ever counts
-const TERM_TORN: u32 = 13u;      // flux of beams that straddle receivers to the end
-const TERM_TORN_COUNT: u32 = 14u; // how many those are
-
-const MAX_DEPOSIT: f32 = 2147483000.0;
+const TERM_TORN: u32 = 12u;       // flux of beams that straddle receivers to the end
+const TERM_TORN_COUNT: u32 = 13u; // how many those are
 
 fn add_flux(texel: u32, channel: u32, channels: u32, counts: f32) {
-    let whole = u32(min(counts + 0.5, MAX_DEPOSIT));
-    if whole == 0u { return; }
-    if counts > MAX_DEPOSIT { atomicAdd(&energy[2u * TERM_OVERFLOWS], 1u); }
-    let word = 2u * (texel * channels + channel);
-    let before = atomicAdd(&flux[word], whole);
-    if before + whole < before { atomicAdd(&flux[word + 1u], 1u); }
+    let whole = u32(counts + 0.5);
+    let place = texel * channels + channel;
+    if !WIDE_SUMS {
+        atomicAdd(&flux[place], whole);
+        return;
+    }
+    let before = atomicAdd(&flux[2u * place], whole);
+    if before + whole < before { atomicAdd(&flux[2u * place + 1u], 1u); }
+}
+
+// The sum of a texel and channel, in counts.
+fn flux_counts(texel: u32, channel: u32, channels: u32) -> f32 {
+    let place = texel * channels + channel;
+    if !WIDE_SUMS { return f32(atomicLoad(&flux[place])); }
+    return f32(atomicLoad(&flux[2u * place + 1u])) * 4294967296.0 + f32(atomicLoad(&flux[2u * place]));
 }
 
 // Adds `counts` (0 … 2⁶²) to a term.

@@ -84,47 +84,61 @@ fn cell_bounds(i: i32, count: i32, base: f32, low: f32, high: f32) -> vec2f {
         select(f32(i + 1) - base, high, i >= count));
 }
 
-// Deposits a triangle; returns the share that fell beside the map.
-fn deposit_triangle(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
+// Whether a footprint has no area to speak of.
+fn is_segment(a: vec2f, b: vec2f, c: vec2f) -> bool {
+    let p = b - a;
+    let q = c - a;
+    let side2 = max(dot(p, p), max(dot(q, q), dot(q - p, q - p)));
+    return side2 >= POINT_SIDE * POINT_SIDE && abs(p.x * q.y - p.y * q.x) < SEGMENT_SHAPE * side2;
+}
+
+// Texels (border cells included) that a footprint touches: first, then last.
+struct TexelBox {
+    first: vec2i,
+    last: vec2i,
+}
+
+// Huge coordinates stay in the range of i32: everything past the border is the border cell.
+fn texel_box(target_map: Target, a: vec2f, b: vec2f, c: vec2f) -> TexelBox {
+    let size = vec2f(f32(target_map.width), f32(target_map.height));
+    let first = vec2i(floor(clamp(min(a, min(b, c)), vec2f(-1.0), size)));
+    let last = vec2i(floor(clamp(max(a, max(b, c)), vec2f(-1.0), size)));
+    return TexelBox(first, last);
+}
+
+// Deposits a triangle that is no segment; returns the share that fell beside the map. There is one place that writes: on a CPU
+// driver both sides of every branch are run, and atomics are what costs.
+fn deposit_area(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
     let size = vec2i(target_map.width, target_map.height);
-    let low = min(a, min(b, c));
-    let high = max(a, max(b, c));
-    // Huge coordinates stay in the range of i32: everything past the border is the border cell.
-    let first = vec2i(floor(clamp(low, vec2f(-1.0), vec2f(size))));
-    let last = vec2i(floor(clamp(high, vec2f(-1.0), vec2f(size))));
-    if all(first == last) {
-        return deposit_share(target_map, first.x, first.y, 1.0, triangle_flux);
-    }
-    if any(last < vec2i(0)) || any(first >= size) { return 1.0; }
+    var box = texel_box(target_map, a, b, c);
     // Corners relative to a texel corner near the footprint keep their last bits.
-    let base = vec2f(first);
+    let base = vec2f(box.first);
     let p = a - base;
     let q = b - base;
     let r = c - base;
     let side2 = max(dot(q - p, q - p), max(dot(r - q, r - q), dot(p - r, p - r)));
-    let area2 = (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
     if side2 < POINT_SIDE * POINT_SIDE {
-        let middle = vec2i(floor((a + b + c) / 3.0));
-        return deposit_share(target_map, middle.x, middle.y, 1.0, triangle_flux);
+        let middle = clamp(vec2i(floor((a + b + c) / 3.0)), box.first, box.last);
+        box = TexelBox(middle, middle);
     }
-    if abs(area2) < SEGMENT_SHAPE * side2 {
-        return deposit_segment(target_map, base, p, q, r, triangle_flux);
-    }
-    let per_area = 2.0 / area2;
-    let lo = low - base;
-    let hi = high - base;
+    // In one texel, or wholly past one side of the map: all of it goes one way.
+    let whole = all(box.first == box.last) || any(box.last < vec2i(0)) || any(box.first >= size);
+    if whole { box.last = box.first; }
+    let per_area = 2.0 / ((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));
+    let lo = min(p, min(q, r));
+    let hi = max(p, max(q, r));
     var beside = 0.0;
-    for (var y = first.y; y <= last.y; y++) {
+    for (var y = box.first.y; y <= box.last.y; y++) {
         let row = cell_bounds(y, size.y, base.y, lo.y, hi.y);
         let edges = clip_to_row(p, q, r, row.x, row.y);
-        let column_first = clamp(i32(floor(row_low(edges) + base.x)), first.x, last.x);
-        let column_last = clamp(i32(floor(row_high(edges) + base.x)), first.x, last.x);
+        var column_first = clamp(i32(floor(row_low(edges) + base.x)), box.first.x, box.last.x);
+        var column_last = clamp(i32(floor(row_high(edges) + base.x)), box.first.x, box.last.x);
         let start = cell_bounds(column_first, size.x, base.x, lo.x, hi.x).x;
         let near = moved(edges, start);
         var right = area_right_of(near, 0.0);
         for (var x = column_first; x <= column_last; x++) {
             let next = area_right_of(near, cell_bounds(x, size.x, base.x, lo.x, hi.x).y - start);
-            let share = max((right - next) * per_area, 0.0);
+            let share = select(max((right - next) * per_area, 0.0), 1.0, whole);
             right = next;
             beside += deposit_share(target_map, x, y, share, triangle_flux);
         }
@@ -132,8 +146,18 @@ fn deposit_triangle(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_f
     return beside;
 }
 
+// Deposits a triangle of any shape; returns the share that fell beside the map.
+fn deposit_triangle(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
+    if is_segment(a, b, c) { return deposit_segment(target_map, a, b, c, triangle_flux); }
+    return deposit_area(target_map, a, b, c, triangle_flux);
+}
+
 // A footprint without area: its flux lies on its longest side, densest under the corner in between.
-fn deposit_segment(target_map: Target, base: vec2f, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
+fn deposit_segment(target_map: Target, corner_a: vec2f, corner_b: vec2f, corner_c: vec2f, triangle_flux: vec3f) -> f32 {
+    let base = vec2f(texel_box(target_map, corner_a, corner_b, corner_c).first);
+    let a = corner_a - base;
+    let b = corner_b - base;
+    let c = corner_c - base;
     // Order the corners along the longest side.
     let ab = dot(b - a, b - a);
     let bc = dot(c - b, c - b);

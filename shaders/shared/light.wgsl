@@ -14,7 +14,7 @@ struct Light {
     energy_scale: f32,         // counts per m² in the energy account
     channels: u32,             // 1 when all channels fade alike, else 3
     split_levels: u32,
-    queue_capacity: u32,
+    pad: u32,
     wide_texels: u32,          // footprints with more texels than this go to a workgroup of their own
     triangle_scale: f32,       // workgroup counts per m² in the energy account
 }

@@ -30,8 +30,13 @@ pub enum Run<'a> {
         /// How many there are.
         triangles: u32,
     },
-    /// Follow this sun.
-    Sun(usize),
+    /// Follow a sun.
+    Sun {
+        /// Which one.
+        index: usize,
+        /// With 64-bit flux sums, after narrow ones have wrapped.
+        wide_sums: bool,
+    },
     /// Make these rows of the picture.
     Band {
         /// First row.

@@ -37,7 +37,7 @@ gpu_struct! {
         energy_scale: f32,
         channels: u32,
         split_levels: u32,
-        queue_capacity: u32,
+        pad: u32,
         wide_texels: u32,
         triangle_scale: f32,
     }
@@ -89,6 +89,17 @@ gpu_struct! {
         first_output: u32,
         adds: u32,
         density_per_flux: f32,
+        pad_0: u32,
+        pad_1: u32,
+        pad_2: u32,
+    }
+}
+
+gpu_struct! {
+    /// The uniform of `shaders/passes/landed.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    Span = "Span" {
+        texel_count: u32,
         pad_0: u32,
         pad_1: u32,
         pad_2: u32,
@@ -179,11 +190,12 @@ gpu_struct! {
 pub type Layout = (&'static str, usize, &'static [(&'static str, usize)]);
 
 /// Layouts of all shared structs.
-pub const LAYOUTS: [Layout; 8] = [
+pub const LAYOUTS: [Layout; 9] = [
     Light::LAYOUT,
     Receiver::LAYOUT,
     Wave::LAYOUT,
     Resolve::LAYOUT,
+    Span::LAYOUT,
     View::LAYOUT,
     SunLight::LAYOUT,
     LevelMapView::LAYOUT,

@@ -1,13 +1,10 @@
-//! Irradiance — turns a sun's flux sums into W/m², adds them to the floor's map, and sums what landed.
+//! Irradiance — turns a sun's flux sums into W/m², and adds them to the floor's map.
 
 use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::{Resolve, vec4};
 use super::light::{light_uniform, receivers};
 use super::slot::{self, Slot};
 use super::surface::wanted_for_sun;
-
-/// Texels that one invocation resolves, as in the shader.
-pub const TEXELS_EACH: u32 = 16;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
@@ -30,7 +27,7 @@ pub const PASS: PassDesc = PassDesc {
         Ok(parts.join(" and "))
     },
     steps: |facts, run| {
-        let Run::Sun(index) = run else { return Vec::new() };
+        let Run::Sun { index, wide_sums } = run else { return Vec::new() };
         let mut steps = Vec::new();
         for (number, receiver) in receivers(facts, index, |_| 0).iter().enumerate() {
             let texels = receiver.map_width * receiver.map_height;
@@ -46,13 +43,13 @@ pub const PASS: PassDesc = PassDesc {
                 density_per_flux: receiver.density_per_flux,
                 ..Resolve::default()
             };
-            let groups = texels.div_ceil(64 * TEXELS_EACH);
-            let columns = groups.min(slot::QUEUE_CAPACITY);
+            let groups = texels.div_ceil(64);
+            let columns = groups.min(slot::MOST_GROUPS);
             steps.push(Step {
                 entry: "irradiance_main",
                 work: Work::Compute(Groups::Direct([columns, groups.div_ceil(columns), 1])),
                 uniforms: vec![
-                    ("light", light_uniform(facts, index)),
+                    ("light", light_uniform(facts, index, wide_sums)),
                     ("resolve", bytemuck::bytes_of(&resolve).to_vec()),
                 ],
             });

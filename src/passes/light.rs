@@ -11,6 +11,10 @@ pub const RECEIVER_BYTES: u64 = size_of::<Receiver>() as u64;
 const WIDE_TEXELS: u32 = 1024;
 /// Counts that the largest possible beam makes: 2³⁰, so that a deposit fits u32 with room for rounding.
 const BEAM_COUNTS: f64 = 1_073_741_824.0;
+/// Where a narrow sum wraps.
+const WRAP_COUNTS: f64 = 4_294_967_296.0;
+/// Times an evenly lit texel's flux that a narrow sum holds.
+const NARROW_HEADROOM: f64 = 1024.0;
 /// The same in the account of a workgroup, whose 128 beams must fit u32 together.
 const BEAM_ACCOUNT_COUNTS: f64 = 8_388_608.0;
 
@@ -23,7 +27,7 @@ fn largest_beam_m2(facts: &SceneFacts, sun: &SunFacts) -> f64 {
 }
 
 /// The uniform of one sun.
-pub fn light_uniform(facts: &SceneFacts, index: usize) -> Vec<u8> {
+pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u8> {
     let sun = &facts.suns[index];
     let cells = facts.quality.water_cells;
     let beam_m2 = largest_beam_m2(facts, sun);
@@ -37,11 +41,11 @@ pub fn light_uniform(facts: &SceneFacts, index: usize) -> Vec<u8> {
         receiver_count: 1 + facts.objects.len() as u32,
         has_floor: u32::from(facts.floor.is_some()),
         ior: facts.ior as f32,
-        flux_scale: (BEAM_COUNTS / beam_m2) as f32,
+        flux_scale: flux_scale(facts, index, wide_sums) as f32,
         energy_scale: energy_scale(facts, index) as f32,
         channels: facts.channels(),
         split_levels: facts.quality.split_levels,
-        queue_capacity: slot::queue_capacity(facts),
+        pad: 0,
         wide_texels: WIDE_TEXELS,
         triangle_scale: (BEAM_ACCOUNT_COUNTS / beam_m2) as f32,
     };
@@ -52,6 +56,28 @@ pub fn light_uniform(facts: &SceneFacts, index: usize) -> Vec<u8> {
 pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
     let all_m2 = largest_beam_m2(facts, &facts.suns[index]) * 2.0 * f64::from(facts.quality.water_cells).powi(2);
     (2.0_f64.powi(60) / all_m2).log2().floor().exp2()
+}
+
+/// Counts per m² in the flux sums; a power of two.
+///
+/// Wide sums take the largest beam at 2³⁰. Narrow ones leave room for [`NARROW_HEADROOM`] times the flux of an evenly lit texel.
+pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
+    let beam = BEAM_COUNTS / largest_beam_m2(facts, &facts.suns[index]);
+    if wide_sums {
+        return beam.log2().floor().exp2();
+    }
+    let sun = &facts.suns[index];
+    let floor_texel_m2 = facts.floor_map.map_or(0.0, |map| {
+        sun.to_light.y * map.rect.size().x * map.rect.size().y / f64::from(map.width * map.height)
+    });
+    let texel_m2 = sun.boxes.iter().flatten().map(|b| 1.0 / b.density_per_flux).fold(floor_texel_m2, f64::max);
+    let narrow = WRAP_COUNTS / (NARROW_HEADROOM * texel_m2);
+    narrow.min(beam).log2().floor().exp2()
+}
+
+/// Whether narrow sums of a sun have wrapped: what landed is then short by at least one whole 2³² counts.
+pub fn has_wrapped(facts: &SceneFacts, index: usize, missing_m2: f64) -> bool {
+    missing_m2 > 0.5 * WRAP_COUNTS / flux_scale(facts, index, false)
 }
 
 /// The receivers of one sun: the floor, then the objects; `level_map_offset` tells where in the arena an object's map lies.

@@ -12,6 +12,7 @@ pub mod desc;
 pub mod gpu_data;
 pub mod hits;
 pub mod irradiance;
+pub mod landed;
 pub mod level_map;
 pub mod level_map_pyramid;
 pub mod light;
@@ -25,7 +26,7 @@ pub use desc::{Groups, PassDesc, Repeat, Step, Work};
 pub use slot::Slot;
 
 /// All passes in the order they run.
-pub const ALL: [&PassDesc; 11] = [
+pub const ALL: [&PassDesc; 12] = [
     &level_map::PASS,
     &level_map_pyramid::PASS,
     &surface::PASS,
@@ -33,6 +34,7 @@ pub const ALL: [&PassDesc; 11] = [
     &hits::PASS,
     &deposit::PASS,
     &split::PASS,
+    &landed::PASS,
     &irradiance::PASS,
     &camera_hits::PASS,
     &camera_irradiance::PASS,

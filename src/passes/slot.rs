@@ -2,10 +2,12 @@
 
 use crate::scene::facts::SceneFacts;
 
-/// Words at the head of a queue: the workgroups of the dispatch that empties it.
-pub const QUEUE_HEAD_WORDS: u64 = 3;
-/// Most items of a queue; a dispatch takes no more workgroups than this along one axis.
-pub const QUEUE_CAPACITY: u32 = 65_535;
+/// Words at the head of a queue: the workgroups of the dispatch that empties it, and the count.
+pub const QUEUE_HEAD_WORDS: u64 = 4;
+/// Most workgroups of a dispatch along one axis.
+pub const MOST_GROUPS: u32 = 65_535;
+/// Workgroups that share one wide footprint.
+pub const WIDE_GROUPS: u32 = 16;
 /// (low, high) pairs of the energy account, see `shaders/shared/flux.wgsl`.
 pub const ENERGY_TERMS: u64 = 16;
 /// Most bytes of one layer of a band of the picture.
@@ -145,12 +147,11 @@ impl Slot {
     pub fn bytes(self, facts: &SceneFacts) -> u64 {
         let side = u64::from(facts.quality.water_cells) + 1;
         let channels = u64::from(facts.channels());
-        let capacity = u64::from(queue_capacity(facts));
+        let cells = u64::from(facts.quality.water_cells);
         let pixels = facts.camera.map_or(0, |c| u64::from(c.width) * u64::from(band_rows(c.width, c.height)));
         match self {
             Self::Surface | Self::Beams | Self::Hits => 16 * side * side,
-            Self::SplitQueue => 4 * (QUEUE_HEAD_WORDS + capacity),
-            Self::WideQueue => 4 * (QUEUE_HEAD_WORDS + 2 * capacity),
+            Self::SplitQueue | Self::WideQueue => 4 * (QUEUE_HEAD_WORDS + 2 * cells * cells),
             Self::Flux => 8 * channels * u64::from(flux_texels(facts)),
             Self::Energy => 8 * ENERGY_TERMS,
             Self::Irradiance => 12 * irradiance_texels(facts),
@@ -170,12 +171,6 @@ impl Slot {
             Self::LevelMaps => 0,
         }
     }
-}
-
-/// Items a queue of this scene can hold: every beam, up to what a dispatch takes.
-pub fn queue_capacity(facts: &SceneFacts) -> u32 {
-    let cells = facts.quality.water_cells;
-    cells.saturating_mul(cells).saturating_mul(2).min(QUEUE_CAPACITY)
 }
 
 /// Texels of the floor's map.

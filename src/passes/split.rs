@@ -18,17 +18,14 @@ pub const PASS: PassDesc = PassDesc {
         if wet == 0 {
             return Err("no object is under water: every beam ends on the floor".to_owned());
         }
-        if facts.quality.split_levels == 0 {
-            return Err("quality.split_levels is zero".to_owned());
-        }
         Ok(format!("{wet} object{} may tear beams", if wet == 1 { "" } else { "s" }))
     },
     steps: |facts, run| {
-        let Run::Sun(index) = run else { return Vec::new() };
+        let Run::Sun { index, wide_sums } = run else { return Vec::new() };
         vec![Step {
             entry: "split_main",
             work: Work::Compute(Groups::Queue(Slot::SplitQueue)),
-            uniforms: vec![("light", light_uniform(facts, index))],
+            uniforms: vec![("light", light_uniform(facts, index, wide_sums))],
         }]
     },
 };

@@ -35,11 +35,11 @@ pub(super) fn wanted_for_sun(facts: &SceneFacts) -> Result<String, String> {
 
 /// One invocation per grid vertex.
 pub(super) fn grid_step(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
-    let Run::Sun(index) = run else { return Vec::new() };
+    let Run::Sun { index, wide_sums } = run else { return Vec::new() };
     let side = facts.quality.water_cells + 1;
     vec![Step {
         entry,
         work: Work::Compute(Groups::Direct([side.div_ceil(64), side, 1])),
-        uniforms: vec![("light", light_uniform(facts, index))],
+        uniforms: vec![("light", light_uniform(facts, index, wide_sums))],
     }]
 }

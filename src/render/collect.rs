@@ -6,7 +6,6 @@ use glam::DVec3;
 
 use super::RenderError;
 use crate::frame::Layer;
-use crate::gpu::GpuError;
 use crate::passes::slot::{self, ENERGY_TERMS, Slot};
 use crate::passes::light;
 use crate::scene::facts::SceneFacts;
@@ -22,23 +21,15 @@ pub(super) mod term {
     pub(crate) const EXTINGUISHED: usize = 3;
     pub(crate) const LEFT: usize = 6;
     pub(crate) const LANDED: usize = 9;
-    pub(crate) const OVERFLOWS: usize = 12;
-    pub(crate) const TORN: usize = 13;
-    pub(crate) const TORN_COUNT: usize = 14;
+    pub(crate) const TORN: usize = 12;
+    pub(crate) const TORN_COUNT: usize = 13;
 }
 
 /// The accounts of all suns from their raw sums, and what is worth a warning.
-pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> Result<(Vec<EnergyAccount>, Vec<Warning>), GpuError> {
+pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Vec<Warning>) {
     let mut accounts = Vec::new();
     let mut warnings = Vec::new();
     for (index, (sun, terms)) in facts.suns.iter().zip(raw.chunks_exact(ENERGY_TERMS as usize)).enumerate() {
-        if terms[term::OVERFLOWS] > 0 {
-            return Err(GpuError::Validation(format!(
-                "{} deposits of light {} were too large for the fixed point",
-                terms[term::OVERFLOWS],
-                sun.light
-            )));
-        }
         let per_count = 1.0 / light::energy_scale(facts, index);
         let grey = |t: usize| sun.irradiance_w_m2.map(|e| terms[t] as f64 * per_count * e);
         let spectral = |t: usize| -> [f64; 3] {
@@ -77,7 +68,16 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> Result<(Vec<EnergyAccou
         }
         accounts.push(account);
     }
-    Ok((accounts, warnings))
+    (accounts, warnings)
+}
+
+/// Flux of a sun under unit irradiance that is in no term of its raw account, m²; the largest of the channels.
+pub(super) fn missing_m2(facts: &SceneFacts, index: usize, terms: &[u64]) -> f64 {
+    let grey = terms[term::EMITTED] as f64 - terms[term::REFLECTED] as f64 - terms[term::MISSED] as f64;
+    let missing = (0..facts.channels() as usize)
+        .map(|c| grey - [term::EXTINGUISHED, term::LEFT, term::LANDED].map(|t| terms[t + c] as f64).iter().sum::<f64>())
+        .fold(f64::MIN, f64::max);
+    missing / light::energy_scale(facts, index)
 }
 
 fn closure(account: &EnergyAccount) -> f64 {

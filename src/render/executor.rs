@@ -10,7 +10,7 @@ use crate::gpu::kernel::RasterTargets;
 use crate::gpu::{Binding, GpuError, Kernel, RasterKernel, readback};
 use crate::passes::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use crate::passes::gpu_data::{Receiver, Wave};
-use crate::passes::slot::{ENERGY_TERMS, Lifetime, Slot, band_rows};
+use crate::passes::slot::{ENERGY_TERMS, Lifetime, Slot, WIDE_GROUPS, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
 use crate::scene::ResolvedScene;
@@ -27,9 +27,8 @@ const EMPTY_DEPTH: f64 = 1e30;
 pub(super) struct FrameBuffers {
     by_name: BTreeMap<&'static str, wgpu::Buffer>,
     empty: wgpu::Buffer,
-    queue_head: wgpu::Buffer,
+    queue_heads: wgpu::Buffer,
     indirect: wgpu::Buffer,
-    accounts: wgpu::Buffer,
 }
 
 impl FrameBuffers {
@@ -62,13 +61,13 @@ impl Renderer {
         let peak_bytes = self.pool.peak_bytes()
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
             + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes);
-        let FrameBuffers { by_name, empty, queue_head, indirect, accounts } = buffers;
+        let FrameBuffers { by_name, empty, queue_heads, indirect } = buffers;
         for (name, buffer) in by_name {
             if name != slot_name(Slot::Geometry) && name != slot_name(Slot::LevelMaps) {
                 self.pool.give_back(buffer);
             }
         }
-        for buffer in [empty, queue_head, indirect, accounts] {
+        for buffer in [empty, queue_heads, indirect] {
             self.pool.give_back(buffer);
         }
         result.map(|mut run| {
@@ -107,21 +106,16 @@ impl Renderer {
                 }
             }
         }
-        let head = self.pool.lend(&device, "queue head", 12, U::COPY_SRC | U::COPY_DST);
-        self.gpu.queue.write_buffer(&head, 0, bytemuck::cast_slice(&[0_u32, 1, 1]));
+        let queue_heads = self.pool.lend(&device, "queue heads", 32, U::COPY_SRC | U::COPY_DST);
+        let heads: [[u32; 4]; 2] = [[0, 1, 1, 0], [0, WIDE_GROUPS, 1, 0]];
+        self.gpu.queue.write_buffer(&queue_heads, 0, bytemuck::cast_slice(&heads));
         let empty = self.pool.lend(&device, "empty list", 256, U::STORAGE | U::COPY_DST);
         self.gpu.queue.write_buffer(&empty, 0, &[0; 256]);
         let buffers = FrameBuffers {
             by_name,
             empty,
-            queue_head: head,
+            queue_heads,
             indirect: self.pool.lend(&device, "indirect", 12, U::INDIRECT | U::COPY_DST),
-            accounts: self.pool.lend(
-                &device,
-                "accounts",
-                ACCOUNT_BYTES * facts.suns.len().max(1) as u64,
-                U::COPY_SRC | U::COPY_DST,
-            ),
         };
         self.upload(facts, &buffers);
         self.gpu.check()?;
@@ -204,33 +198,12 @@ impl Renderer {
         if !of(Repeat::LevelMap).is_empty() {
             self.build_level_maps(facts, &of(Repeat::LevelMap), missing, buffers, &mut time_ms)?;
         }
-        for sun in 0..facts.suns.len() {
-            if of(Repeat::Sun).is_empty() {
-                break;
-            }
+        let mut accounts = Vec::new();
+        for sun in 0..if of(Repeat::Sun).is_empty() { 0 } else { facts.suns.len() } {
             check_cancelled(cancel)?;
-            let started = Instant::now();
-            if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
-                self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.receivers(facts, sun)));
-            }
-            let mut encoder = self.encoder("sun");
-            clear_for_sun(&mut encoder, buffers);
-            for pass in of(Repeat::Sun) {
-                self.record(&mut encoder, pass, facts, Run::Sun(sun), buffers, None)?;
-            }
-            if let Some(energy) = buffers.by_name.get(slot_name(Slot::Energy)) {
-                encoder.copy_buffer_to_buffer(energy, 0, &buffers.accounts, ACCOUNT_BYTES * sun as u64, ACCOUNT_BYTES);
-            }
-            self.submit(encoder, started, &mut time_ms)?;
+            accounts.extend(self.run_sun(facts, sun, &of(Repeat::Sun), buffers, &mut time_ms)?);
         }
-        let started = Instant::now();
-        let accounts: Vec<u64> = if facts.suns.is_empty() {
-            Vec::new()
-        } else {
-            readback::read(&self.gpu, &buffers.accounts, ACCOUNT_BYTES * facts.suns.len() as u64)?
-        };
-        let (energy, warnings) = collect::energy(facts, &accounts)?;
-        time_ms.readback += ms_since(started);
+        let (energy, warnings) = collect::energy(facts, &accounts);
         let mut result = RunResult {
             width: 0,
             height: 0,
@@ -248,6 +221,48 @@ impl Renderer {
             result.time_ms.readback += ms_since(started);
         }
         Ok(result)
+    }
+
+    /// Follows one sun and returns its raw account; with narrow flux sums, and once more with wide ones if those wrapped.
+    fn run_sun(
+        &mut self,
+        facts: &SceneFacts,
+        index: usize,
+        passes: &[&'static PassDesc],
+        buffers: &FrameBuffers,
+        time_ms: &mut TimeStats,
+    ) -> Result<Vec<u64>, RenderError> {
+        let Some(energy) = buffers.by_name.get(slot_name(Slot::Energy)) else { return Ok(Vec::new()) };
+        let mut account = Vec::new();
+        for wide_sums in [false, true] {
+            let started = Instant::now();
+            if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
+                self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.receivers(facts, index)));
+            }
+            let mut encoder = self.encoder("sun's flux");
+            clear_for_sun(&mut encoder, buffers);
+            let (sums, rest): (Vec<&'static PassDesc>, Vec<&'static PassDesc>) =
+                passes.iter().copied().partition(|pass| !pass.writes.contains(&Slot::Irradiance));
+            for pass in sums {
+                self.record(&mut encoder, pass, facts, Run::Sun { index, wide_sums }, buffers, None)?;
+            }
+            self.submit(encoder, started, time_ms)?;
+            let started = Instant::now();
+            account = readback::read(&self.gpu, energy, ACCOUNT_BYTES)?;
+            time_ms.readback += ms_since(started);
+            if !wide_sums && light::has_wrapped(facts, index, collect::missing_m2(facts, index, &account)) {
+                continue;
+            }
+            // Only sums that are known to be whole join the maps.
+            let started = Instant::now();
+            let mut encoder = self.encoder("sun's maps");
+            for pass in rest {
+                self.record(&mut encoder, pass, facts, Run::Sun { index, wide_sums }, buffers, None)?;
+            }
+            self.submit(encoder, started, time_ms)?;
+            break;
+        }
+        Ok(account)
     }
 
     #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
@@ -414,9 +429,10 @@ impl Renderer {
         buffers: &FrameBuffers,
         targets: Option<&DrawTargets>,
     ) -> Result<(), GpuError> {
+        let wide_sums = matches!(run, Run::Sun { wide_sums: true, .. });
         for step in (pass.steps)(facts, run) {
             match step.work {
-                Work::Compute(groups) => self.dispatch(encoder, pass, facts, &step, groups, buffers, targets)?,
+                Work::Compute(groups) => self.dispatch(encoder, pass, facts, &step, (groups, wide_sums), buffers, targets)?,
                 Work::DrawLevelMap { back, vertices } => {
                     if let Some(targets) = targets {
                         self.draw(encoder, pass, &step, (back, vertices), buffers, targets)?;
@@ -434,14 +450,15 @@ impl Renderer {
         pass: &'static PassDesc,
         facts: &SceneFacts,
         step: &Step,
-        groups: Groups,
+        (groups, wide_sums): (Groups, bool),
         buffers: &FrameBuffers,
         targets: Option<&DrawTargets>,
     ) -> Result<(), GpuError> {
-        let key = (pass.name, step.entry, facts.attenuates());
+        let key = (pass.name, step.entry, facts.attenuates(), wide_sums);
         if !self.kernels.contains_key(&key) {
             let path = format!("passes/{}.wgsl", pass.name);
-            let constants = [("ATTENUATES", f64::from(u8::from(facts.attenuates())))];
+            let switch = |on: bool| f64::from(u8::from(on));
+            let constants = [("ATTENUATES", switch(facts.attenuates())), ("WIDE_SUMS", switch(wide_sums))];
             let kernel = Kernel::new(&self.gpu, &self.sources, &path, step.entry, &constants)?;
             self.kernels.insert(key, kernel);
         }
@@ -566,7 +583,8 @@ fn clear_for_sun(encoder: &mut wgpu::CommandEncoder, buffers: &FrameBuffers) {
     for (name, buffer) in &buffers.by_name {
         let Some(info) = Slot::by_name(name).map(Slot::info) else { continue };
         if info.is_queue {
-            encoder.copy_buffer_to_buffer(&buffers.queue_head, 0, buffer, 0, 12);
+            let head = if *name == slot_name(Slot::WideQueue) { 16 } else { 0 };
+            encoder.copy_buffer_to_buffer(&buffers.queue_heads, head, buffer, 0, 16);
         } else if info.lifetime == Lifetime::Sun
             && (*name == slot_name(Slot::Flux) || *name == slot_name(Slot::Energy))
         {

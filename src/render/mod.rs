@@ -67,8 +67,8 @@ impl From<plan::PlanError> for RenderError {
     }
 }
 
-/// Shader path, entry point, whether it attenuates.
-type KernelKey = (&'static str, &'static str, bool);
+/// Pass, entry point, whether it attenuates, whether its flux sums are wide.
+type KernelKey = (&'static str, &'static str, bool, bool);
 
 /// Owns the GPU context and the caches; lives on the GPU thread.
 #[derive(Debug)]

@@ -23,6 +23,7 @@ fn program(words: &[&str]) -> Output {
 fn exit_codes_say_whether_a_retry_is_worth_it() {
     let scene = || SceneError::from(Issue::invalid("/a", "b", "c"));
     let over = RenderError::OverBudget {
+        what: "the frame".to_owned(),
         needed_bytes: 2,
         budget_bytes: 1,
     };
