@@ -1,19 +1,18 @@
-//! The float64 truth against closed forms, against single rays, and against itself.
+//! The float64 truth against single rays and against itself.
 
 use caustica::accuracy::metrics::{relative_l1, total_flux_bias};
 use caustica::physics::fresnel::fresnel_transmittance;
 use caustica::physics::refraction::{direction_to_light, refract_direction};
-use caustica::reference::closed_form::{SineUnderZenith, flat_water_irradiance};
-use caustica::reference::{
-    ReferenceError, ReferenceMap, ReferenceSettings, irradiance_map, light_window,
-};
+use caustica::reference::closed_form::flat_water_irradiance;
+use caustica::reference::{ReferenceMap, ReferenceSettings, irradiance_map, light_window};
 use caustica::scene::{Light, Output, ResolvedScene, Scene, Sun, Wave};
 use caustica::waves::{WaterSurface, normal};
 use glam::DVec2;
 
-const SINE_POOL: &str = include_str!("../../scenes/sine_pool.json");
-const DRY: &str = include_str!("../../scenes/dry.json");
-const FLAT: &str = include_str!("../../scenes/flat.json");
+use crate::reference_closed_form::single_sine;
+
+pub(crate) const SINE_POOL: &str = include_str!("../../scenes/sine_pool.json");
+pub(crate) const FLAT: &str = include_str!("../../scenes/flat.json");
 
 pub(crate) fn resolved(json: &str) -> ResolvedScene {
     ResolvedScene {
@@ -22,14 +21,14 @@ pub(crate) fn resolved(json: &str) -> ResolvedScene {
     }
 }
 
-fn sun_mut(scene: &mut Scene) -> &mut Sun {
+pub(crate) fn sun_mut(scene: &mut Scene) -> &mut Sun {
     match &mut scene.lights[0] {
         Light::Sun(sun) => sun,
         Light::Sky(_) => panic!("the first light is the sun"),
     }
 }
 
-fn set_map(scene: &mut Scene, half_m: f64, width: u32, height: u32) {
+pub(crate) fn set_map(scene: &mut Scene, half_m: f64, width: u32, height: u32) {
     let Output::IrradianceMap(output) = &mut scene.output else {
         panic!("the output is a map");
     };
@@ -67,156 +66,6 @@ pub(crate) fn assert_energy_closes(map: &ReferenceMap) {
         assert!(e.emitted_w[c] > 0.0);
         let closure = (rest / e.emitted_w[c] - 1.0).abs();
         assert!(closure < 1e-10, "channel {c}: {closure}, {e:?}");
-    }
-}
-
-#[test]
-fn flat_water_is_the_closed_form() {
-    let mut flat = resolved(FLAT);
-    flat.scene.water.scattering_per_m = [0.1, 0.02, 0.0];
-    for elevation_deg in [90.0, 60.0, 45.0, 20.0, 5.0, 2.0] {
-        sun_mut(&mut flat.scene).elevation_deg = elevation_deg;
-        sun_mut(&mut flat.scene).irradiance_w_m2 = [1000.0, 700.0, 3.0];
-        let sun = sun_mut(&mut flat.scene).clone();
-        let expected = flat_water_irradiance(&flat.scene.water, 2.0, &sun);
-        let map = count(&flat, 200_000);
-        for (texel, irradiance) in map.irradiance.iter().enumerate() {
-            for c in 0..3 {
-                assert!(
-                    (irradiance[c] / expected[c] - 1.0).abs() < 1e-6,
-                    "{elevation_deg}°, texel {texel}: {irradiance:?}, expected {expected:?}"
-                );
-            }
-        }
-        assert!(map.relative_error < 1e-10);
-        assert_energy_closes(&map);
-    }
-}
-
-#[test]
-fn flat_closed_form_by_hand() {
-    let flat = resolved(FLAT);
-    let Light::Sun(sun) = &flat.scene.lights[0] else {
-        panic!("a sun");
-    };
-    // 1000 W/m² from 60°: cos θ_i = 0.8660, sin θ_t = 0.5/1.333, T = 0.9790 (R_s = 0.0329, R_p = 0.0091), d = 2.158 m.
-    let expected = [
-        866.03 * 0.979 * (-0.35f64 * 2.1577).exp(),
-        866.03 * 0.979 * (-0.07f64 * 2.1577).exp(),
-        866.03 * 0.979 * (-0.03f64 * 2.1577).exp(),
-    ];
-    let got = flat_water_irradiance(&flat.scene.water, 2.0, sun);
-    for c in 0..3 {
-        assert!(
-            (got[c] / expected[c] - 1.0).abs() < 1e-3,
-            "{got:?} {expected:?}"
-        );
-    }
-    for elevation_deg in [0.0, -10.0] {
-        let set = Sun {
-            elevation_deg,
-            ..sun.clone()
-        };
-        assert_eq!(
-            flat_water_irradiance(&flat.scene.water, 2.0, &set),
-            [0.0; 3]
-        );
-    }
-}
-
-fn single_sine(
-    amplitude_m: f64,
-    depth_m: f64,
-    absorption_per_m: f64,
-) -> (ResolvedScene, SineUnderZenith) {
-    let json = format!(
-        r#"{{
-            "water": {{
-                "waves": [{{ "kind": "sine", "amplitude_m": {amplitude_m}, "wavelength_m": 0.9, "phase_deg": 40 }}],
-                "absorption_per_m": [{absorption_per_m}, 0, {absorption_per_m}]
-            }},
-            "floor": {{ "depth_m": {depth_m}, "size_m": [4, 4] }},
-            "lights": [{{ "kind": "sun", "elevation_deg": 90, "irradiance_w_m2": [1, 1, 2] }}],
-            "output": {{ "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 128, "height": 8 }}
-        }}"#
-    );
-    let closed = SineUnderZenith {
-        amplitude_m,
-        wavelength_m: 0.9,
-        phase_rad: 40f64.to_radians(),
-        ior: 1.333,
-        depth_m,
-        extinction_per_m: absorption_per_m,
-    };
-    (resolved(&json), closed)
-}
-
-#[test]
-fn a_single_sine_is_the_closed_form() {
-    // Before the first focus, and far behind it.
-    for (amplitude_m, depth_m, folds) in [(0.01, 1.0, 0), (0.03, 6.0, 2)] {
-        let (scene, mut closed) = single_sine(amplitude_m, depth_m, 0.35);
-        assert_eq!(closed.folds_m().len(), folds);
-        let lossy = closed.texel_means(-1.0, 2.0 / 128.0, 128);
-        closed.extinction_per_m = 0.0;
-        let clear = closed.texel_means(-1.0, 2.0 / 128.0, 128);
-        let truth: Vec<f64> = (0..8)
-            .flat_map(|_| (0..128).flat_map(|i| [lossy[i], clear[i], 2.0 * lossy[i]]))
-            .collect();
-        let map = count(&scene, 20_000_000);
-        let error = relative_l1(map.irradiance.as_flattened(), &truth).unwrap();
-        assert!(error < 1e-3, "{depth_m} m deep: {error}");
-        assert!(
-            error < 3.0 * map.relative_error,
-            "the estimate {} does not cover the error {error}",
-            map.relative_error
-        );
-        assert_energy_closes(&map);
-    }
-}
-
-#[test]
-fn the_closed_sine_keeps_its_flux() {
-    for (amplitude_m, depth_m) in [(0.01, 1.0), (0.03, 6.0), (0.1, 5.0)] {
-        let (_, mut closed) = single_sine(amplitude_m, depth_m, 0.0);
-        for extinction_per_m in [0.0, 0.35] {
-            closed.extinction_per_m = extinction_per_m;
-            let texels = closed.texel_means(0.17, 0.9 / 90.0, 90);
-            let mean = texels.iter().sum::<f64>() / 90.0;
-            assert!(
-                (mean / closed.mean_irradiance() - 1.0).abs() < 1e-7,
-                "{mean} {}",
-                closed.mean_irradiance()
-            );
-        }
-    }
-    let (_, flat) = single_sine(0.0, 2.0, 0.0);
-    assert!((flat.mean_irradiance() - fresnel_transmittance(1.0, 1.333)).abs() < 1e-12);
-}
-
-#[test]
-fn the_closed_sine_is_consistent_with_itself() {
-    let (_, closed) = single_sine(0.03, 6.0, 0.1);
-    let texel_m = 1e-5;
-    for i in 0..200 {
-        let x = f64::from(i) * 0.0123;
-        // dX/dx is the derivative of X.
-        let h = 1e-6;
-        let numeric = (closed.landing_m(x + h) - closed.landing_m(x - h)) / (2.0 * h);
-        assert!((numeric - closed.stretch(x)).abs() < 1e-6, "{x}");
-        // Points agree with texels, away from the folds.
-        let near_fold = closed.folds_m().iter().any(|fold| {
-            let off = (closed.landing_m(*fold) - x) / 0.9;
-            (off - off.round()).abs() < 0.02
-        });
-        if !near_fold {
-            let texel = closed.texel_means(x - 0.5 * texel_m, texel_m, 1)[0];
-            let point = closed.irradiance_at(x);
-            assert!((texel / point - 1.0).abs() < 1e-5, "{x}: {texel} {point}");
-        }
-    }
-    for fold in closed.folds_m() {
-        assert!(closed.stretch(fold).abs() < 1e-10);
     }
 }
 
@@ -487,90 +336,6 @@ fn rounds_go_on_until_the_target_is_met() {
         "an unmet target is told, not hidden"
     );
     assert!(map.rays <= 21_000, "{}", map.rays);
-}
-
-#[test]
-fn scenes_that_cannot_be_counted_are_errors() {
-    type Spoil = fn(&mut ResolvedScene);
-    let cases: [(&str, Spoil); 11] = [
-        ("irradiance_map", |r| *r = resolved(DRY)),
-        ("waves", |r| {
-            let Wave::Sine(wave) = &mut r.scene.water.waves[0];
-            wave.amplitude_m = f64::NAN;
-        }),
-        ("irradiance_map", |r| r.scene.output = Output::default()),
-        ("floor only", |r| {
-            set_receiver(&mut r.scene, "0");
-        }),
-        ("no floor", |r| r.scene.floor = None),
-        ("is empty", |r| set_map(&mut r.scene, -1.0, 8, 8)),
-        ("is empty", |r| set_map(&mut r.scene, 1.0, 0, 8)),
-        ("is empty", |r| set_map(&mut r.scene, f64::NAN, 8, 8)),
-        ("extinction", |r| {
-            r.scene.water.absorption_per_m[1] = f64::NAN
-        }),
-        ("ior", |r| r.scene.water.ior = 0.5),
-        ("irradiance_w_m2", |r| {
-            sun_mut(&mut r.scene).irradiance_w_m2[2] = f64::INFINITY;
-        }),
-    ];
-    for (word, spoil) in cases {
-        let mut scene = resolved(SINE_POOL);
-        spoil(&mut scene);
-        let error = irradiance_map(&scene, &ReferenceSettings::default(), &|_| ()).unwrap_err();
-        assert!(error.to_string().contains(word), "{word}: {error}");
-    }
-}
-
-fn set_receiver(scene: &mut Scene, receiver: &str) {
-    if let Output::IrradianceMap(output) = &mut scene.output {
-        output.receiver = serde_json::from_str(receiver).unwrap();
-    }
-}
-
-#[test]
-fn lights_and_settings_that_make_no_sense_are_errors() {
-    let pool = resolved(SINE_POOL);
-    let with = |change: fn(&mut caustica::scene::IrradianceMapOutput)| {
-        let mut scene = pool.clone();
-        if let Output::IrradianceMap(output) = &mut scene.scene.output {
-            change(output);
-        }
-        irradiance_map(&scene, &ReferenceSettings::default(), &|_| ()).unwrap_err()
-    };
-    assert_eq!(
-        with(|output| output.light = Some(1)),
-        ReferenceError::NotASun {
-            index: 1,
-            lights: 1
-        }
-    );
-    assert_eq!(
-        with(|output| output.include_sky = true),
-        ReferenceError::IncludesSky
-    );
-    let good = ReferenceSettings::default();
-    for bad in [
-        ReferenceSettings {
-            max_rays: 0,
-            ..good
-        },
-        ReferenceSettings {
-            initial_rays: 0,
-            ..good
-        },
-        ReferenceSettings {
-            target_error: Some(0.0),
-            ..good
-        },
-        ReferenceSettings {
-            target_error: Some(f64::NAN),
-            ..good
-        },
-    ] {
-        let error = irradiance_map(&pool, &bad, &|_| ()).unwrap_err();
-        assert!(matches!(error, ReferenceError::Settings(_)), "{error}");
-    }
 }
 
 #[test]
