@@ -120,8 +120,9 @@ fn gaussian_integer(norm: f64) -> (u32, u32) {
         let q_near = (f64::from(p) * golden).round() as u32;
         for q in q_near.saturating_sub(reach)..=(q_near + reach).min(p) {
             let short = 1.0 - (f64::from(p).powi(2) + f64::from(q).powi(2)) / norm;
-            // A tenth fewer rays is worth one in the worst quotient; measured, and not critical.
-            let score = f64::from(worst_quotient(p, q)) + 10.0 * short;
+            // On folding waves the error per ray hardly depends on the quotients; a ray not sent costs more. Measured with
+            // weights 1 … 1000: flat from 20 on.
+            let score = f64::from(worst_quotient(p, q)) + 40.0 * short;
             if short >= 0.0 && score < best.0 {
                 best = (score, p, q);
             }
