@@ -22,12 +22,14 @@ fn scenes_that_cannot_be_counted_are_errors() {
         ("floor only", |r| {
             set_receiver(&mut r.scene, "0");
         }),
-        ("no floor", |r| r.scene.floor = None),
+        ("no floor", |r| {
+            r.scene.floor = None;
+        }),
         ("is empty", |r| set_map(&mut r.scene, -1.0, 8, 8)),
         ("is empty", |r| set_map(&mut r.scene, 1.0, 0, 8)),
         ("is empty", |r| set_map(&mut r.scene, f64::NAN, 8, 8)),
         ("extinction", |r| {
-            r.scene.water.absorption_per_m[1] = f64::NAN
+            r.scene.water.absorption_per_m[1] = f64::NAN;
         }),
         ("ior", |r| r.scene.water.ior = 0.5),
         ("irradiance_w_m2", |r| {
