@@ -1,1 +1,33 @@
+//! The float64 truth on the CPU: where sunlight lands on the floor, by counting plain rays, and in closed form.
+//!
+//! Nothing here is a port of a shader. The renderer carries flux in beams with exact coverage on a water grid; the reference
+//! refracts single rays and counts where they land. Both read the same scene, nothing else is shared.
+//!
+//! - `settings`: how long to count, and why a scene cannot be counted;
+//! - `window`: the piece of water that can light a map;
+//! - `lattice`: where the rays start;
+//! - `refract`: many rays at once through the surface;
+//! - `occluders`: the first triangle a ray meets;
+//! - `floor`: the texels rays are counted in;
+//! - `tally`: what a batch of rays brought, term by term;
+//! - `trace`: one sun, one lattice, all rays;
+//! - `map`: rounds of ever finer lattices until the map is good enough;
+//! - `closed_form`: scenes with a formula instead of rays.
+//!
+//! Model: suns are points at infinity; waves do not shade each other and light that a surface reflects is not followed;
+//! objects stop light under the water only, not on its way to the water; light that is refracted upwards is lost.
 
+pub mod closed_form;
+mod floor;
+mod lattice;
+mod map;
+mod occluders;
+mod refract;
+mod settings;
+mod tally;
+mod trace;
+mod window;
+
+pub use map::{EnergyTerms, ReferenceMap, irradiance_map};
+pub use settings::{ReferenceError, ReferenceSettings};
+pub use window::{LightWindow, light_window};

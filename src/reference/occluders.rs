@@ -1,0 +1,213 @@
+//! The first triangle a ray meets.
+
+use bvh::aabb::{Aabb, Bounded};
+use bvh::bounding_hierarchy::BHShape;
+use bvh::bvh::{Bvh, BvhNode};
+use glam::{DQuat, DVec2, DVec3};
+
+use super::ReferenceError;
+use super::window::Target;
+use crate::scene::ResolvedScene;
+
+/// A triangle in local coordinates, m.
+#[derive(Clone, Copy, Debug)]
+struct WorldTriangle {
+    corner_m: DVec3,
+    edge_1_m: DVec3,
+    edge_2_m: DVec3,
+    object: usize,
+    node: usize,
+}
+
+impl Bounded<f64, 3> for WorldTriangle {
+    fn aabb(&self) -> Aabb<f64, 3> {
+        let (a, b, c) = (
+            self.corner_m,
+            self.corner_m + self.edge_1_m,
+            self.corner_m + self.edge_2_m,
+        );
+        let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+        Aabb::with_bounds(min.to_array().into(), max.to_array().into())
+    }
+}
+
+impl BHShape<f64, 3> for WorldTriangle {
+    fn set_bh_node_index(&mut self, index: usize) {
+        self.node = index;
+    }
+
+    fn bh_node_index(&self) -> usize {
+        self.node
+    }
+}
+
+/// What stops a ray before the floor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    /// Part of the way to the floor, 0 … 1.
+    pub(super) fraction: f64,
+    /// Index into the scene's objects.
+    pub(super) object: usize,
+}
+
+/// All triangles of a scene.
+pub(super) struct Occluders {
+    triangles: Vec<WorldTriangle>,
+    tree: Bvh<f64, 3>,
+    /// Bounds of each object.
+    pub(super) bounds: Vec<Target>,
+    all: Target,
+}
+
+impl Occluders {
+    /// Places the meshes; local coordinates start at `origin_m` (x, z) and at the water at rest.
+    pub(super) fn of(resolved: &ResolvedScene, origin_m: DVec2) -> Result<Self, ReferenceError> {
+        let scene = &resolved.scene;
+        if scene.objects.len() != resolved.meshes.len() {
+            return Err(ReferenceError::Meshes {
+                objects: scene.objects.len(),
+                meshes: resolved.meshes.len(),
+            });
+        }
+        let local_m = DVec3::new(origin_m.x, scene.water.level_m, origin_m.y);
+        let mut triangles = Vec::new();
+        let mut bounds = Vec::new();
+        let nothing = Target {
+            min_m: DVec3::INFINITY,
+            max_m: DVec3::NEG_INFINITY,
+        };
+        for (index, (object, mesh)) in scene.objects.iter().zip(&resolved.meshes).enumerate() {
+            let scale = DVec3::from(object.scale.per_axis());
+            let rotation = DQuat::from_array(object.rotation).normalize();
+            let translation_m = DVec3::from(object.translation_m) - local_m;
+            let mut bound = nothing;
+            for triangle in &mesh.triangles {
+                let [a, b, c] = triangle.positions_m.map(|p| {
+                    let p_local =
+                        translation_m + rotation * (scale * (mesh.origin_m + p.as_dvec3()));
+                    bound.min_m = bound.min_m.min(p_local);
+                    bound.max_m = bound.max_m.max(p_local);
+                    p_local
+                });
+                if !(a.is_finite() && b.is_finite() && c.is_finite()) {
+                    return Err(ReferenceError::Figure {
+                        what: "a corner of a placed mesh",
+                        value: f64::NAN,
+                        accepted: "finite positions, translation, rotation and scale are accepted",
+                    });
+                }
+                triangles.push(WorldTriangle {
+                    corner_m: a,
+                    edge_1_m: b - a,
+                    edge_2_m: c - a,
+                    object: index,
+                    node: 0,
+                });
+            }
+            bounds.push(bound);
+        }
+        let all = bounds.iter().fold(nothing, |all, b| Target {
+            min_m: all.min_m.min(b.min_m),
+            max_m: all.max_m.max(b.max_m),
+        });
+        let tree = Bvh::build(&mut triangles);
+        Ok(Self {
+            triangles,
+            tree,
+            bounds,
+            all,
+        })
+    }
+
+    /// Whether there is nothing to meet.
+    pub(super) fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The first triangle between `from_m` and `to_m`, either side of it. `stack` is scratch space.
+    pub(super) fn first_hit(
+        &self,
+        from_m: DVec3,
+        to_m: DVec3,
+        stack: &mut Vec<usize>,
+    ) -> Option<Hit> {
+        let way = to_m - from_m;
+        let per_way = way.recip();
+        let meets = |min_m: DVec3, max_m: DVec3, until: f64| -> bool {
+            // f64::min and max drop the NaN of 0 · ∞: a ray within a face's plane counts as meeting the box.
+            let (t_a, t_b) = ((min_m - from_m) * per_way, (max_m - from_m) * per_way);
+            let enter = (t_a.x.min(t_b.x))
+                .max(t_a.y.min(t_b.y))
+                .max(t_a.z.min(t_b.z));
+            let leave = (t_a.x.max(t_b.x))
+                .min(t_a.y.max(t_b.y))
+                .min(t_a.z.max(t_b.z));
+            // Slack for rounding: boxes of level triangles have no thickness.
+            enter.max(0.0) <= leave.min(until) + 1e-12
+        };
+        let mut best: Option<Hit> = None;
+        let mut until = 1.0;
+        if !meets(self.all.min_m, self.all.max_m, until) {
+            return None;
+        }
+        stack.clear();
+        if !self.tree.nodes.is_empty() {
+            stack.push(0);
+        }
+        while let Some(index) = stack.pop() {
+            match &self.tree.nodes[index] {
+                BvhNode::Node {
+                    child_l_index,
+                    child_l_aabb,
+                    child_r_index,
+                    child_r_aabb,
+                    ..
+                } => {
+                    for (child, aabb) in
+                        [(child_l_index, child_l_aabb), (child_r_index, child_r_aabb)]
+                    {
+                        let min_m = DVec3::new(aabb.min[0], aabb.min[1], aabb.min[2]);
+                        let max_m = DVec3::new(aabb.max[0], aabb.max[1], aabb.max[2]);
+                        if meets(min_m, max_m, until) {
+                            stack.push(*child);
+                        }
+                    }
+                }
+                BvhNode::Leaf { shape_index, .. } => {
+                    let triangle = &self.triangles[*shape_index];
+                    if let Some(fraction) = triangle.crossing(from_m, way)
+                        && fraction < until
+                    {
+                        until = fraction;
+                        best = Some(Hit {
+                            fraction,
+                            object: triangle.object,
+                        });
+                    }
+                }
+            }
+        }
+        best
+    }
+}
+
+impl WorldTriangle {
+    /// Where `from_m + t · way` with t in 0 … 1 crosses the triangle. Möller & Trumbore, Journal of Graphics Tools 2(1), 1997,
+    /// without culling: water lights both sides of an open mesh.
+    fn crossing(&self, from_m: DVec3, way: DVec3) -> Option<f64> {
+        let across = way.cross(self.edge_2_m);
+        let determinant = self.edge_1_m.dot(across);
+        if determinant == 0.0 {
+            return None;
+        }
+        let to_origin = from_m - self.corner_m;
+        let u = to_origin.dot(across) / determinant;
+        let turned = to_origin.cross(self.edge_1_m);
+        let v = way.dot(turned) / determinant;
+        if u < 0.0 || v < 0.0 || u + v > 1.0 {
+            return None;
+        }
+        let t = self.edge_2_m.dot(turned) / determinant;
+        (0.0..=1.0).contains(&t).then_some(t)
+    }
+}

@@ -1,0 +1,100 @@
+//! How long to count, and why a scene cannot be counted.
+
+/// When the counting stops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReferenceSettings {
+    /// Relative L1 error at which the map is good enough, above 0; `None`: spend all of `max_rays` at once.
+    pub target_error: Option<f64>,
+    /// Most rays of a round, both halves and all suns together, 1 …
+    pub max_rays: u64,
+    /// Rays of the first round, 1 …
+    pub initial_rays: u64,
+}
+
+impl Default for ReferenceSettings {
+    fn default() -> Self {
+        Self {
+            target_error: Some(2e-3),
+            max_rays: 4_000_000_000,
+            initial_rays: 1 << 23,
+        }
+    }
+}
+
+impl ReferenceSettings {
+    pub(super) fn check(&self) -> Result<(), ReferenceError> {
+        if self.max_rays == 0 || self.initial_rays == 0 {
+            return Err(ReferenceError::Settings(format!(
+                "max_rays is {} and initial_rays is {}; both must be 1 or more",
+                self.max_rays, self.initial_rays
+            )));
+        }
+        match self.target_error {
+            Some(target) if target.is_nan() || target <= 0.0 => Err(ReferenceError::Settings(
+                format!("target_error is {target}; it must be above 0, or absent"),
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Why there is no reference map.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReferenceError {
+    /// The output is a view, or a map on a mesh.
+    #[error(
+        "the reference counts light on the floor only: output.kind must be \"irradiance_map\" and output.receiver \"floor\""
+    )]
+    NotAFloorMap,
+    /// Nothing to count on.
+    #[error("the scene has no floor; the reference needs one")]
+    NoFloor,
+    /// The map has no area, no texels, or corners that are no numbers.
+    #[error(
+        "the map from {min_m:?} to {max_m:?} m with {width} × {height} texels is empty; max must be above min and there must be a texel"
+    )]
+    EmptyMap {
+        /// Lower corner (x, z), m.
+        min_m: [f64; 2],
+        /// Upper corner (x, z), m.
+        max_m: [f64; 2],
+        /// Texels along x.
+        width: u32,
+        /// Texels along z.
+        height: u32,
+    },
+    /// `output.light` does not name a sun.
+    #[error(
+        "output.light is {index}, which is no sun; the scene has {lights} lights, counted from 0"
+    )]
+    NotASun {
+        /// What was asked for.
+        index: u32,
+        /// Length of `lights`.
+        lights: usize,
+    },
+    /// Skies are not counted.
+    #[error("the reference counts suns only; output.include_sky must be false")]
+    IncludesSky,
+    /// The list of meshes does not fit the list of objects.
+    #[error("the scene has {objects} objects but {meshes} meshes were given")]
+    Meshes {
+        /// Length of `objects`.
+        objects: usize,
+        /// Length of the mesh list.
+        meshes: usize,
+    },
+    /// A figure of the scene is not finite or out of its range.
+    #[error("{what} is {value}; {accepted}")]
+    Figure {
+        /// Which one.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// What would be accepted.
+        accepted: &'static str,
+    },
+    /// The settings make no sense.
+    #[error("reference settings: {0}")]
+    Settings(String),
+}

@@ -1,0 +1,124 @@
+//! One sun, one lattice, all rays.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::floor::FloorMap;
+use super::lattice::Lattice;
+use super::occluders::Occluders;
+use super::refract::{BLOCK, Block, RowRefractor};
+use super::tally::{Tally, add_to, sum};
+use super::window::LightWindow;
+use crate::physics::attenuation::transmission;
+use crate::waves::WaterSurface;
+
+/// Most bands of rows; each has its own map until they are added up in order.
+const MOST_BANDS: usize = 64;
+/// Memory for the bands' maps, bytes.
+const BAND_BYTES: usize = 256 << 20;
+
+/// What all rays of a sun have in common, in local coordinates.
+pub(super) struct Beam<'a, const K: usize> {
+    pub(super) map: &'a FloorMap,
+    pub(super) occluders: &'a Occluders,
+    pub(super) surface: &'a WaterSurface,
+    pub(super) to_light: DVec3,
+    pub(super) ior: f64,
+    /// The different extinction coefficients, 1/m.
+    pub(super) extinction_per_m: [f64; K],
+    pub(super) window: LightWindow,
+}
+
+impl<const K: usize> Beam<'_, K> {
+    /// Counts every ray of `lattice` in the window; `counted` hears how many rays were counted since it was last called.
+    ///
+    /// The number of bands and the order of their sum depend on the map only, so the bits do not depend on the threads.
+    pub(super) fn trace(&self, lattice: &Lattice, counted: &(dyn Fn(u64) + Sync)) -> Tally<K> {
+        let (first, end) = lattice.rows(&self.window);
+        let rows = usize::try_from(end - first).unwrap_or(0);
+        let map_bytes = self.map.len() * size_of::<[f64; K]>();
+        let bands = (BAND_BYTES / map_bytes.max(1))
+            .clamp(2, MOST_BANDS)
+            .min(rows.max(1));
+        let refractor = RowRefractor::new(
+            self.surface,
+            lattice.step_m(),
+            self.to_light,
+            self.ior,
+            self.map.depth_m,
+        );
+        let tallies: Vec<Tally<K>> = (0..bands)
+            .into_par_iter()
+            .map(|band| {
+                let mut tally = Tally::new(self.map, self.occluders.bounds.len());
+                let mut block = Block::new();
+                let mut stack = Vec::new();
+                for row in rows * band / bands..rows * (band + 1) / bands {
+                    let row = lattice.row(first + row as i64, &self.window);
+                    let mut done = 0;
+                    while done < row.count {
+                        let start_m = row.start_m + lattice.step_m() * done as f64;
+                        let count = (row.count - done).min(BLOCK as u64) as usize;
+                        refractor.send(start_m, &mut block);
+                        self.count(start_m, lattice, &block, count, &mut stack, &mut tally);
+                        done += count as u64;
+                    }
+                    tally.rays += row.count;
+                }
+                counted(tally.rays);
+                tally
+            })
+            .collect();
+        let mut total = Tally::new(self.map, self.occluders.bounds.len());
+        for tally in &tallies {
+            total.add(tally);
+        }
+        total.scale(lattice.area_per_point_m2());
+        total
+    }
+
+    /// Books the first `count` rays of `block`.
+    fn count(
+        &self,
+        start_m: DVec2,
+        lattice: &Lattice,
+        block: &Block,
+        count: usize,
+        stack: &mut Vec<usize>,
+        tally: &mut Tally<K>,
+    ) {
+        tally.emitted += sum(&block.facing[..count]);
+        tally.reflected += sum(&block.reflected[..count]);
+        for i in 0..count {
+            let (x_m, z_m) = (block.x_m[i], block.z_m[i]);
+            let entered = block.entered[i];
+            if x_m.is_nan() {
+                tally.missed += entered;
+                continue;
+            }
+            let hit = if self.occluders.is_empty() {
+                None
+            } else {
+                let top_m = start_m + lattice.step_m() * i as f64;
+                let from_m = DVec3::new(top_m.x, block.height_m[i], top_m.y);
+                let to_m = DVec3::new(x_m, -self.map.depth_m, z_m);
+                self.occluders.first_hit(from_m, to_m, stack)
+            };
+            let path_m = block.path_m[i] * hit.map_or(1.0, |hit| hit.fraction);
+            let mut arrived = [entered; K];
+            for (k, arrived) in arrived.iter_mut().enumerate() {
+                if self.extinction_per_m[k] > 0.0 {
+                    *arrived = entered * transmission(self.extinction_per_m[k], path_m);
+                    tally.lost[k] += entered - *arrived;
+                }
+            }
+            if let Some(hit) = hit {
+                add_to(&mut tally.objects[hit.object], &arrived);
+            } else if let Some(texel) = self.map.texel_at(x_m, z_m) {
+                add_to(&mut tally.texels[texel], &arrived);
+            } else {
+                add_to(&mut tally.left, &arrived);
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! The piece of water that can light a map.
+
+use glam::{DVec2, DVec3};
+
+use crate::physics::refraction::{normal_from_slope, refract_direction};
+use crate::waves::WaterSurface;
+
+/// Directions in which the rim of the slopes is looked at.
+const RIM_DIRECTIONS: u32 = 64;
+/// Shares of the rim slopes that are looked at.
+const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// Part of the window's size added on each side.
+const MARGIN: f64 = 0.02;
+/// Metres sideways per metre down beyond which light is not followed: only water steeper than 41° can bend light so flat.
+const FLATTEST: f64 = 16.0;
+
+/// A rectangle of water at rest, local coordinates, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightWindow {
+    /// Lower corner (x, z).
+    pub min_m: DVec2,
+    /// Upper corner (x, z).
+    pub max_m: DVec2,
+}
+
+impl LightWindow {
+    fn empty() -> Self {
+        Self {
+            min_m: DVec2::INFINITY,
+            max_m: DVec2::NEG_INFINITY,
+        }
+    }
+
+    fn include(&mut self, point_m: DVec2) {
+        self.min_m = self.min_m.min(point_m);
+        self.max_m = self.max_m.max(point_m);
+    }
+}
+
+/// A box that light may have to reach, local coordinates, m; y up from the water at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Target {
+    pub(super) min_m: DVec3,
+    pub(super) max_m: DVec3,
+}
+
+/// The water whose light can reach the rectangle from `min_m` to `max_m`, `depth_m` below the water at rest.
+///
+/// Projects the rectangle back along the directions that the water's slopes can refract to; 2 % wider on each side.
+pub fn light_window(
+    surface: &WaterSurface,
+    to_light: DVec3,
+    ior: f64,
+    depth_m: f64,
+    min_m: DVec2,
+    max_m: DVec2,
+) -> LightWindow {
+    let floor = Target {
+        min_m: DVec3::new(min_m.x, -depth_m, min_m.y),
+        max_m: DVec3::new(max_m.x, -depth_m, max_m.y),
+    };
+    window_of(surface, to_light, ior, &[floor])
+}
+
+/// The water whose light can reach any of `targets`; those wholly above the crests are left out.
+pub(super) fn window_of(
+    surface: &WaterSurface,
+    to_light: DVec3,
+    ior: f64,
+    targets: &[Target],
+) -> LightWindow {
+    let offsets = offsets_per_depth(surface, to_light, ior);
+    let crest_m = surface.max_height_m();
+    let mut window = LightWindow::empty();
+    for target in targets.iter().filter(|t| t.min_m.y <= crest_m) {
+        let shallow_m = (-crest_m - target.max_m.y).max(0.0);
+        let deep_m = (crest_m - target.min_m.y).max(0.0);
+        for offset in &offsets {
+            for drop_m in [shallow_m, deep_m] {
+                let shift_m = *offset * drop_m;
+                window.include(DVec2::new(target.min_m.x, target.min_m.z) - shift_m);
+                window.include(DVec2::new(target.max_m.x, target.max_m.z) - shift_m);
+            }
+        }
+    }
+    let margin_m = (window.max_m - window.min_m) * MARGIN;
+    LightWindow {
+        min_m: window.min_m - margin_m,
+        max_m: window.max_m + margin_m,
+    }
+}
+
+/// Metres sideways (x, z) per metre down of the refracted light, for slopes all over what the surface can have.
+fn offsets_per_depth(surface: &WaterSurface, to_light: DVec3, ior: f64) -> Vec<DVec2> {
+    let rim = surface.rim_slopes(RIM_DIRECTIONS);
+    let mut slopes = vec![DVec2::ZERO];
+    for share in SHARES {
+        slopes.extend(rim.iter().map(|slope| *slope * share));
+    }
+    slopes
+        .into_iter()
+        .filter_map(|slope| {
+            let normal = normal_from_slope(slope.x, slope.y);
+            if normal.dot(to_light) <= 0.0 {
+                return None;
+            }
+            let t = refract_direction(-to_light, normal, ior)?;
+            let sideways = DVec2::new(t.x, t.z);
+            let down = (-t.y).max(sideways.length() / FLATTEST);
+            Some(sideways / down)
+        })
+        .collect()
+}
