@@ -37,4 +37,15 @@ fn smoke() {
         }
         println!("BENCH {cells}: total {best:.1} deposit {dep:.1} hits {hits:.1} surface {surf:.1} irradiance {res:.1}");
     }
+
+    let truth = caustica::reference::irradiance_map(&ResolvedScene { scene: serde_json::from_str(sine).unwrap(), meshes: vec![] }, &caustica::reference::ReferenceSettings { target_error: Some(0.0005), ..Default::default() }, &|_| {}).unwrap();
+    println!("TRUTH {} {}", truth.relative_error, truth.rays);
+    for cells in [64, 128, 256, 512, 1024] {
+        let mut scene: Scene = serde_json::from_str(sine).unwrap();
+        scene.quality.water_cells = cells;
+        let resolved = ResolvedScene { scene, meshes: vec![] };
+        let frame = renderer.render(&resolved, &CancellationToken::new()).unwrap();
+        let e = &frame.layers[&caustica::scene::LayerName::Irradiance].data;
+        println!("ERR {cells} {:?}", caustica::accuracy::metrics::relative_l1(e, truth.irradiance.as_flattened()));
+    }
 }
