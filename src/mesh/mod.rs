@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 
 pub use hierarchy::HierarchyNode;
 pub use obj::MeshError;
-pub use store::MeshStore;
+pub use store::{Inserted, MeshInfo, MeshStore};
 
 /// A triangle mesh, immutable after reading.
 #[derive(Clone, Debug)]

@@ -1,9 +1,15 @@
 //! What a request may say, field by field. Every default stands here once; `openapi.yaml` is generated from these types.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use utoipa::ToSchema;
 
-use super::parse::{inner, integral_u32, optional_integral_u32, tagged};
+use super::parse::{inner, integer, integer_of, optional_integer, rotation, tagged, wrong_type};
+use super::ranges::{
+    Integer, LevelMapTexels, LightIndex, MapSide, MapTexels, PngBits, ReceiverIndex, SplitLevels,
+    ViewSide, WaterCells,
+};
+use super::strict::carry;
 
 /// A scene: water, receivers, lights, a camera and what to make of them.
 ///
@@ -43,7 +49,7 @@ pub struct Scene {
 pub struct Water {
     /// Wave components, added up. Default: none, flat water.
     pub waves: Vec<Wave>,
-    /// Height of the water at rest, m. Default 0.
+    /// Height of the water at rest, m, −10⁶ … 10⁶. Default 0.
     pub level_m: f64,
     /// Index of refraction relative to air, 1 … 4. Default 1.333.
     pub ior: f64,
@@ -106,13 +112,13 @@ pub struct SineWave {
     pub amplitude_m: f64,
     /// λ, m, 10⁻³ … 10⁵.
     pub wavelength_m: f64,
-    /// θ, degrees from +X towards +Z. Default 0.
+    /// θ, degrees from +X towards +Z, −10⁶ … 10⁶. Default 0.
     #[serde(default)]
     pub direction_deg: f64,
-    /// φ, degrees. Default 0.
+    /// φ, degrees, −10⁶ … 10⁶. Default 0.
     #[serde(default)]
     pub phase_deg: f64,
-    /// 2π/ω, s, above 0; absent: from the dispersion relation.
+    /// 2π/ω, s, 10⁻⁶ … 10¹²; absent: from the dispersion relation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
 }
@@ -123,9 +129,9 @@ pub struct SineWave {
 pub struct Floor {
     /// Distance below the water at rest, m, 0 … 11 000.
     pub depth_m: f64,
-    /// Extent along x and z, m, above 0.
+    /// Extent along x and z, m, 10⁻⁶ … 10⁶.
     pub size_m: [f64; 2],
-    /// Centre (x, z), m. Default (0, 0).
+    /// Centre (x, z), m, −10⁶ … 10⁶. Default (0, 0).
     #[serde(default)]
     pub center_m: [f64; 2],
     /// Diffuse reflectance per channel, 0 … 1. Default (0.7, 0.65, 0.5), pale sand.
@@ -169,7 +175,7 @@ pub struct Sun {
     pub kind: SunKind,
     /// Height above the horizon e, degrees, −90 … 90; at or below 0 the sun gives no light, and the plan says so.
     pub elevation_deg: f64,
-    /// Azimuth a, degrees from +X towards +Z. Default 0.
+    /// Azimuth a, degrees from +X towards +Z, −10⁶ … 10⁶. Default 0.
     #[serde(default)]
     pub azimuth_deg: f64,
     /// Irradiance per channel on a plane facing the sun, W/m², 0 … 10⁹.
@@ -192,13 +198,13 @@ pub struct Sky {
 pub struct Object {
     /// Mesh id (`blake3:…`) from `POST /v1/meshes`; in a scene file also a path relative to the file.
     pub mesh: String,
-    /// Translation, m. Default (0, 0, 0).
+    /// Translation, m, −10⁶ … 10⁶. Default (0, 0, 0).
     #[serde(default)]
     pub translation_m: [f64; 3],
     /// Rotation as quaternion (x, y, z, w), of length 1 ± 10⁻³ (normalised on reading). Default: none.
-    #[serde(default = "identity_rotation")]
+    #[serde(default = "identity_rotation", deserialize_with = "rotation")]
     pub rotation: [f64; 4],
-    /// Scale: one number or (x, y, z), each above 0. Default 1.
+    /// Scale: one number or (x, y, z), each 10⁻⁶ … 10⁶. Default 1.
     #[serde(default)]
     pub scale: Scale,
     /// Diffuse reflectance per channel, 0 … 1; absent: the mesh's materials.
@@ -211,13 +217,25 @@ fn identity_rotation() -> [f64; 4] {
 }
 
 /// One factor, or one per axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Scale {
     /// The same along all axes.
     Uniform(f64),
     /// Along x, y, z of the mesh.
     PerAxis([f64; 3]),
+}
+
+impl<'de> Deserialize<'de> for Scale {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = Value::deserialize(deserializer)?;
+        match value {
+            Value::Number(_) => inner(value).map(Self::Uniform),
+            Value::Array(_) => inner(value).map(Self::PerAxis),
+            other => return Err(wrong_type(&other, "a number or an array of length 3")),
+        }
+        .map_err(serde::de::Error::custom)
+    }
 }
 
 impl Default for Scale {
@@ -277,11 +295,11 @@ pub struct PerspectiveCamera {
     /// `perspective`, may be left out.
     #[serde(default)]
     pub kind: PerspectiveKind,
-    /// Eye, m.
+    /// Eye, m, −10⁶ … 10⁶.
     pub position_m: [f64; 3],
-    /// The point in the middle of the picture, m; not the eye.
+    /// The point in the middle of the picture, m, −10⁶ … 10⁶; not the eye.
     pub target_m: [f64; 3],
-    /// Up direction, any length above 0, not along the view. Default (0, 1, 0).
+    /// Up direction, each component −10⁶ … 10⁶, any length above 0, not along the view. Default (0, 1, 0).
     #[serde(default = "default_up")]
     pub up: [f64; 3],
     /// Full vertical field of view, degrees, 0.1 … 179. Default 45.
@@ -295,14 +313,14 @@ pub struct PerspectiveCamera {
 pub struct OrthographicCamera {
     /// Always `orthographic`.
     pub kind: OrthographicKind,
-    /// Middle of the image plane, m.
+    /// Middle of the image plane, m, −10⁶ … 10⁶.
     pub position_m: [f64; 3],
-    /// The point in the middle of the picture, m; not the position.
+    /// The point in the middle of the picture, m, −10⁶ … 10⁶; not the position.
     pub target_m: [f64; 3],
-    /// Up direction, any length above 0, not along the view. Default (0, 1, 0).
+    /// Up direction, each component −10⁶ … 10⁶, any length above 0, not along the view. Default (0, 1, 0).
     #[serde(default = "default_up")]
     pub up: [f64; 3],
-    /// Height of the picture in the world, m, above 0.
+    /// Height of the picture in the world, m, 10⁻⁶ … 10⁶.
     pub height_m: f64,
 }
 
@@ -323,19 +341,19 @@ pub struct Quality {
     /// Where on a mesh a beam ends. Default `hit`.
     pub placement: Placement,
     /// Water cells along each side of a light's window, 2 … 2048. Default 256. The error falls with its square.
-    #[serde(deserialize_with = "integral_u32")]
+    #[serde(deserialize_with = "integer::<WaterCells, _>")]
     #[schema(minimum = 2, maximum = 2048)]
     pub water_cells: u32,
     /// Texels along the longer side of the floor's irradiance map of a view, 16 … 4096. Default 512.
-    #[serde(deserialize_with = "integral_u32")]
+    #[serde(deserialize_with = "integer::<MapTexels, _>")]
     #[schema(minimum = 16, maximum = 4096)]
     pub map_texels: u32,
     /// Texels along each side of a mesh's level map and of its irradiance map, 16 … 2048. Default 256.
-    #[serde(deserialize_with = "integral_u32")]
+    #[serde(deserialize_with = "integer::<LevelMapTexels, _>")]
     #[schema(minimum = 16, maximum = 2048)]
     pub level_map_texels: u32,
     /// How often beams that straddle receivers are halved, 0 … 4. Default 2.
-    #[serde(deserialize_with = "integral_u32")]
+    #[serde(deserialize_with = "integer::<SplitLevels, _>")]
     #[schema(minimum = 0, maximum = 4)]
     pub split_levels: u32,
 }
@@ -430,18 +448,24 @@ pub struct ViewOutput {
     /// Always `view`.
     pub kind: ViewKind,
     /// Picture width, pixels, 1 … 16384. Default 960.
-    #[serde(default = "default_width", deserialize_with = "integral_u32")]
+    #[serde(default = "default_width", deserialize_with = "integer::<ViewSide, _>")]
     #[schema(minimum = 1, maximum = 16384)]
     pub width: u32,
     /// Picture height, pixels, 1 … 16384. Default 540.
-    #[serde(default = "default_height", deserialize_with = "integral_u32")]
+    #[serde(
+        default = "default_height",
+        deserialize_with = "integer::<ViewSide, _>"
+    )]
     #[schema(minimum = 1, maximum = 16384)]
     pub height: u32,
     /// File format. Default `png`.
     #[serde(default)]
     pub format: ImageFormat,
     /// Bits per PNG channel, 8 or 16. Default 8. EXR ignores it.
-    #[serde(default = "default_png_bits", deserialize_with = "integral_u32")]
+    #[serde(
+        default = "default_png_bits",
+        deserialize_with = "integer::<PngBits, _>"
+    )]
     #[schema(minimum = 8, maximum = 16)]
     pub png_bits: u32,
     /// Exposure in stops relative to the scene's own (see `stats.exposure`), −40 … 40. Default 0. PNG only: EXR stays unexposed.
@@ -501,16 +525,16 @@ pub struct IrradianceMapOutput {
     pub kind: IrradianceMapKind,
     /// `"floor"` or an index into `objects`.
     pub receiver: Receiver,
-    /// Lower corner (x, z) on the floor, m. Floor only; default: the floor's.
+    /// Lower corner (x, z) on the floor, m, −10⁶ … 10⁶. Floor only; default: the floor's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min_m: Option<[f64; 2]>,
-    /// Upper corner (x, z) on the floor, m. Floor only; default: the floor's.
+    /// Upper corner (x, z) on the floor, m, −10⁶ … 10⁶, above `min_m`. Floor only; default: the floor's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_m: Option<[f64; 2]>,
     /// Texels along x, 1 … 8192. Floor only; default 512.
     #[serde(
         default,
-        deserialize_with = "optional_integral_u32",
+        deserialize_with = "optional_integer::<MapSide, _>",
         skip_serializing_if = "Option::is_none"
     )]
     #[schema(minimum = 1, maximum = 8192)]
@@ -518,7 +542,7 @@ pub struct IrradianceMapOutput {
     /// Texels along z, 1 … 8192. Floor only; default 512.
     #[serde(
         default,
-        deserialize_with = "optional_integral_u32",
+        deserialize_with = "optional_integer::<MapSide, _>",
         skip_serializing_if = "Option::is_none"
     )]
     #[schema(minimum = 1, maximum = 8192)]
@@ -526,7 +550,7 @@ pub struct IrradianceMapOutput {
     /// Index into `lights` of the only sun to count; needed on a mesh when there are several suns. Default: all.
     #[serde(
         default,
-        deserialize_with = "optional_integral_u32",
+        deserialize_with = "optional_integer::<LightIndex, _>",
         skip_serializing_if = "Option::is_none"
     )]
     pub light: Option<u32>,
@@ -537,7 +561,10 @@ pub struct IrradianceMapOutput {
     #[serde(default = "default_map_format")]
     pub format: ImageFormat,
     /// Bits per PNG channel, 8 or 16. Default 8.
-    #[serde(default = "default_png_bits", deserialize_with = "integral_u32")]
+    #[serde(
+        default = "default_png_bits",
+        deserialize_with = "integer::<PngBits, _>"
+    )]
     #[schema(minimum = 8, maximum = 16)]
     pub png_bits: u32,
     /// Exposure of PNG in stops relative to the scene's own, −40 … 40. Default 0.
@@ -553,13 +580,26 @@ fn default_map_format() -> ImageFormat {
 }
 
 /// A surface that receives light: `"floor"` or an index into `objects`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Receiver {
     /// The floor rectangle.
     Floor(FloorWord),
     /// An index into `objects`.
     Object(u32),
+}
+
+impl<'de> Deserialize<'de> for Receiver {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = Value::deserialize(deserializer)?;
+        match &value {
+            Value::String(word) if word == "floor" => Ok(Self::Floor(FloorWord::Word)),
+            Value::Number(_) => integer_of::<ReceiverIndex>(&value)
+                .map(Self::Object)
+                .map_err(|issue| serde::de::Error::custom(carry(&issue))),
+            other => Err(wrong_type(other, &ReceiverIndex::accepted())),
+        }
+    }
 }
 
 /// How linear layers become a file.
@@ -628,9 +668,9 @@ pub enum LayerName {
     Irradiance,
 }
 
-/// Declares the one-word type of a `kind` field.
+/// Declares the one-word type of a `kind` field. (`tt` and not `literal`: the schema's derive does not see through the latter.)
 macro_rules! kinds {
-    ($($name:ident = $word:literal),+ $(,)?) => {$(
+    ($($name:ident = $word:tt),+ $(,)?) => {$(
         #[doc = concat!("The word `", $word, "`.")]
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
         pub enum $name {

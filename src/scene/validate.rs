@@ -1,1 +1,203 @@
-//! Ranges and references.
+//! Ranges and references: what a scene must fulfil beyond having the right shape.
+
+use glam::DVec3;
+
+use super::error::SceneError;
+use super::findings::Findings;
+use super::parse::ROTATION_LENGTH_TOLERANCE;
+use super::ranges::{self, number};
+use super::types::{Camera, Floor, Light, Object, Quality, Scale, Scene, Water, Wave};
+use super::validate_output;
+use crate::config::Limits;
+
+/// Smallest distance from a camera to its target, m.
+pub const MIN_VIEW_DISTANCE_M: f64 = 1e-6;
+
+/// Smallest sine of the angle between the up direction and the view.
+pub const MIN_UP_SINE: f64 = 1e-6;
+
+impl Scene {
+    /// Checks every range and reference.
+    ///
+    /// Whether the meshes exist is not checked here: see [`super::resolve`].
+    ///
+    /// # Errors
+    ///
+    /// All findings, in the order of the fields; at most 100 are listed.
+    pub fn validate(&self, limits: &Limits) -> Result<(), SceneError> {
+        let mut findings = Findings::default();
+        findings.number("/time_s", self.time_s, &ranges::TIME);
+        water(&mut findings, &self.water, limits);
+        if let Some(floor_there) = &self.floor {
+            floor(&mut findings, floor_there);
+        }
+        lights(&mut findings, &self.lights, limits);
+        objects(&mut findings, &self.objects, limits);
+        if let Some(camera_there) = &self.camera {
+            camera(&mut findings, camera_there);
+        }
+        quality(&mut findings, &self.quality);
+        validate_output::output(&mut findings, self, limits);
+        let issues = findings.into_issues();
+        if issues.is_empty() {
+            Ok(())
+        } else {
+            Err(SceneError { issues })
+        }
+    }
+}
+
+fn water(findings: &mut Findings, water: &Water, limits: &Limits) {
+    findings.number("/water/level_m", water.level_m, &ranges::COORDINATE);
+    findings.number("/water/ior", water.ior, &ranges::IOR);
+    let coefficients = &ranges::COEFFICIENT;
+    findings.numbers(
+        "/water/absorption_per_m",
+        &water.absorption_per_m,
+        coefficients,
+    );
+    findings.numbers(
+        "/water/scattering_per_m",
+        &water.scattering_per_m,
+        coefficients,
+    );
+    let waves = &water.waves;
+    if !findings.count("/water/waves", "waves", waves.len(), limits.max_waves) {
+        return;
+    }
+    for (index, wave) in waves.iter().enumerate() {
+        let at = |field: &str| format!("/water/waves/{index}/{field}");
+        let Wave::Sine(sine) = wave;
+        findings.number(at("amplitude_m"), sine.amplitude_m, &ranges::AMPLITUDE);
+        findings.number(at("wavelength_m"), sine.wavelength_m, &ranges::WAVELENGTH);
+        let angle = &ranges::TURNING_ANGLE;
+        findings.number(at("direction_deg"), sine.direction_deg, angle);
+        findings.number(at("phase_deg"), sine.phase_deg, angle);
+        if let Some(period_s) = sine.period_s {
+            findings.number(at("period_s"), period_s, &ranges::PERIOD);
+        }
+    }
+}
+
+fn floor(findings: &mut Findings, floor: &Floor) {
+    findings.number("/floor/depth_m", floor.depth_m, &ranges::DEPTH);
+    findings.numbers("/floor/size_m", &floor.size_m, &ranges::EXTENT);
+    findings.numbers("/floor/center_m", &floor.center_m, &ranges::COORDINATE);
+    findings.numbers("/floor/albedo", &floor.albedo, &ranges::ALBEDO);
+}
+
+fn lights(findings: &mut Findings, lights: &[Light], limits: &Limits) {
+    if !findings.count("/lights", "lights", lights.len(), limits.max_lights) {
+        return;
+    }
+    for (index, light) in lights.iter().enumerate() {
+        let at = |field: &str| format!("/lights/{index}/{field}");
+        match light {
+            Light::Sun(sun) => {
+                findings.number(at("elevation_deg"), sun.elevation_deg, &ranges::ELEVATION);
+                findings.number(at("azimuth_deg"), sun.azimuth_deg, &ranges::TURNING_ANGLE);
+                let pointer = at("irradiance_w_m2");
+                findings.numbers(&pointer, &sun.irradiance_w_m2, &ranges::IRRADIANCE);
+            }
+            Light::Sky(sky) => {
+                let pointer = at("radiance_w_m2_sr");
+                findings.numbers(&pointer, &sky.radiance_w_m2_sr, &ranges::RADIANCE);
+            }
+        }
+    }
+}
+
+fn objects(findings: &mut Findings, objects: &[Object], limits: &Limits) {
+    if !findings.count("/objects", "objects", objects.len(), limits.max_objects) {
+        return;
+    }
+    for (index, object) in objects.iter().enumerate() {
+        let at = |field: &str| format!("/objects/{index}/{field}");
+        if object.mesh.is_empty() {
+            findings.invalid(at("mesh"), "the mesh id is empty", "`blake3:…`");
+        }
+        let translation = at("translation_m");
+        findings.numbers(&translation, &object.translation_m, &ranges::COORDINATE);
+        rotation(findings, at("rotation"), object.rotation);
+        match object.scale {
+            Scale::Uniform(scale) => {
+                findings.number(at("scale"), scale, &ranges::SCALE);
+            }
+            Scale::PerAxis(scales) => {
+                findings.numbers(&at("scale"), &scales, &ranges::SCALE);
+            }
+        }
+        if let Some(albedo) = object.albedo {
+            findings.numbers(&at("albedo"), &albedo, &ranges::ALBEDO);
+        }
+    }
+}
+
+fn rotation(findings: &mut Findings, pointer: String, rotation: [f64; 4]) {
+    let length = rotation.iter().map(|v| v * v).sum::<f64>().sqrt();
+    // Written so that a length of NaN is refused too.
+    let is_unit = (length - 1.0).abs() <= ROTATION_LENGTH_TOLERANCE;
+    if !is_unit {
+        findings.invalid(
+            pointer,
+            format!("the quaternion has length {}", number(length)),
+            format!("[x, y, z, w] of length 1 ± {ROTATION_LENGTH_TOLERANCE}; [0, 0, 0, 1] is no rotation"),
+        );
+    }
+}
+
+fn camera(findings: &mut Findings, camera: &Camera) {
+    let (position_m, target_m, up) = camera.pose();
+    let coordinate = &ranges::COORDINATE;
+    let mut is_sound = findings.numbers("/camera/position_m", &position_m, coordinate);
+    is_sound &= findings.numbers("/camera/target_m", &target_m, coordinate);
+    is_sound &= findings.numbers("/camera/up", &up, &ranges::UP);
+    match camera {
+        Camera::Perspective(c) => {
+            let pointer = "/camera/vertical_fov_deg";
+            findings.number(pointer, c.vertical_fov_deg, &ranges::FIELD_OF_VIEW);
+        }
+        Camera::Orthographic(c) => {
+            findings.number("/camera/height_m", c.height_m, &ranges::EXTENT);
+        }
+    }
+    if !is_sound {
+        return;
+    }
+    let view = DVec3::from(target_m) - DVec3::from(position_m);
+    if view.length() < MIN_VIEW_DISTANCE_M {
+        findings.invalid(
+            "/camera/target_m",
+            "the target is where the camera is",
+            format!(
+                "a point at least {} m from `position_m`",
+                number(MIN_VIEW_DISTANCE_M)
+            ),
+        );
+        return;
+    }
+    // Divided by its largest component, an up direction of any length has a length that neither vanishes nor overflows.
+    let up = DVec3::from(up);
+    let up = up / up.abs().max_element();
+    if !up.is_finite() {
+        let detail = "the up direction has no length";
+        findings.invalid("/camera/up", detail, "a direction, such as [0, 1, 0]");
+        return;
+    }
+    let sine = up.cross(view).length() / (up.length() * view.length());
+    if sine < MIN_UP_SINE {
+        findings.invalid(
+            "/camera/up",
+            "the up direction is parallel to the view",
+            "a direction across the view, such as [0, 0, -1] for a camera that looks straight down",
+        );
+    }
+}
+
+fn quality(findings: &mut Findings, quality: &Quality) {
+    findings.integer::<ranges::WaterCells>("/quality/water_cells", quality.water_cells);
+    findings.integer::<ranges::MapTexels>("/quality/map_texels", quality.map_texels);
+    let level_map_texels = quality.level_map_texels;
+    findings.integer::<ranges::LevelMapTexels>("/quality/level_map_texels", level_map_texels);
+    findings.integer::<ranges::SplitLevels>("/quality/split_levels", quality.split_levels);
+}

@@ -1,0 +1,128 @@
+//! The way from a frame to the bytes of a file.
+
+use crate::frame::Frame;
+use crate::scene::{Encoding, ImageFormat};
+use crate::stats::Warning;
+
+use super::metadata::Metadata;
+use super::{exr, png};
+
+/// An image file in memory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Encoded {
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// `image/png` or `image/x-exr`.
+    pub media_type: &'static str,
+    /// What was lost on the way (clipped, clamped, left out); the file's metadata says the same.
+    pub warnings: Vec<Warning>,
+}
+
+/// Why a frame cannot be written.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EncodeError {
+    /// A value is NaN or infinite.
+    #[error(
+        "layer {layer}, pixel ({x}, {y}), value {channel} of the pixel is {value}; only finite numbers can be written{exception}"
+    )]
+    NonFinite {
+        /// The layer, by its name in a scene.
+        layer: &'static str,
+        /// Column, from the left.
+        x: u32,
+        /// Row, from the top.
+        y: u32,
+        /// Index within the pixel, from 0.
+        channel: usize,
+        /// The value.
+        value: f32,
+        /// What else would be accepted, as the end of the sentence; may be empty.
+        exception: &'static str,
+    },
+    /// A layer does not have the shape that belongs to it.
+    #[error(
+        "layer {layer} holds {values} values in {channels} channels; {width} x {height} pixels of {wanted_channels} channels are needed"
+    )]
+    Shape {
+        /// The layer, by its name in a scene.
+        layer: &'static str,
+        /// Channels found.
+        channels: usize,
+        /// Values found.
+        values: usize,
+        /// Frame width, pixels.
+        width: u32,
+        /// Frame height, pixels.
+        height: u32,
+        /// Channels needed.
+        wanted_channels: usize,
+    },
+    /// The frame has no pixels or no layers.
+    #[error("the frame is empty: {width} x {height} pixels, {layers} layers")]
+    Empty {
+        /// Frame width, pixels.
+        width: u32,
+        /// Frame height, pixels.
+        height: u32,
+        /// Number of layers.
+        layers: usize,
+    },
+    /// PNG needs a layer that can be shown.
+    #[error("PNG shows layer radiance (or irradiance of a map), the frame holds {present} only")]
+    NothingToShow {
+        /// What the frame holds.
+        present: String,
+    },
+    /// The exposure factor is useless.
+    #[error("exposure factor {scale} cannot be applied; 0 ... 1e200 are accepted")]
+    Exposure {
+        /// The factor found in the frame's statistics.
+        scale: f64,
+    },
+    /// PNG has no such depth here.
+    #[error("PNG with {bits} bits per channel cannot be written; 8 and 16 are accepted")]
+    PngBits {
+        /// Bits asked for.
+        bits: u32,
+    },
+    /// A text cannot be stored in the file.
+    #[error("metadata {name} cannot be stored: it has characters outside Latin-1")]
+    Text {
+        /// Name of the entry.
+        name: &'static str,
+    },
+    /// The file format's library refused.
+    #[error("the {format} encoder failed: {reason}")]
+    Format {
+        /// `PNG` or `EXR`.
+        format: &'static str,
+        /// Its own words.
+        reason: String,
+    },
+}
+
+/// Writes a frame as `encoding` says, with `metadata` inside.
+///
+/// PNG: layer radiance (or the irradiance of a map), exposed by `frame.stats.exposure.scale`, tone-mapped, sRGB; the
+/// exposure in stops is part of that scale and `encoding.exposure_ev` is not applied again. EXR: every layer, linear and
+/// unexposed. A frame whose only layer is irradiance is an irradiance map.
+///
+/// # Errors
+/// See [`EncodeError`]; nothing non-finite is ever written.
+pub fn encode(
+    frame: &Frame,
+    encoding: &Encoding,
+    metadata: &Metadata,
+) -> Result<Encoded, EncodeError> {
+    if frame.width == 0 || frame.height == 0 || frame.layers.is_empty() {
+        return Err(EncodeError::Empty {
+            width: frame.width,
+            height: frame.height,
+            layers: frame.layers.len(),
+        });
+    }
+    match encoding.format {
+        ImageFormat::Png => png::encode(frame, encoding, metadata),
+        ImageFormat::Exr => exr::encode(frame, encoding, metadata),
+    }
+}

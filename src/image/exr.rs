@@ -1,0 +1,216 @@
+//! EXR: every layer, scene-linear and unexposed, in one part with ZIP compression.
+
+use ::exr::block::lines::LineRefMut;
+use ::exr::image::write::samples::{SamplesWriter, WritableSamples};
+use ::exr::math::RoundingMode;
+use ::exr::meta::attribute::{Chromaticities, LevelMode};
+use ::exr::meta::header::Header;
+use ::exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Encoding as Blocks, Image, ImageAttributes,
+    IntegerBounds, Layer as Part, LayerAttributes, SampleType, SmallVec, Text, Vec2, WritableImage,
+};
+use half::f16;
+
+use crate::frame::{Frame, Layer};
+use crate::scene::{Encoding, ExrPixel, LayerName};
+use crate::stats::Warning;
+
+use super::encode::{EncodeError, Encoded};
+use super::exr_header::sort_attributes;
+use super::layers::{
+    FAR_DEPTH_M, IRRADIANCE_MAP, LayerFormat, check, format_of, is_irradiance_map,
+};
+use super::metadata::{Metadata, SCENE_HASH_KEY, STATS_KEY};
+
+/// Media type of EXR.
+pub const MEDIA_TYPE: &str = "image/x-exr";
+
+/// Linear light with Rec. 709 primaries, by the names of the Color Interop Forum.
+pub const COLOR_INTEROP_ID: &str = "lin_rec709_scene";
+
+/// Rec. ITU-R BT.709 primaries and white point D65, CIE xy.
+const REC_709: Chromaticities = Chromaticities {
+    red: Vec2(0.64, 0.33),
+    green: Vec2(0.30, 0.60),
+    blue: Vec2(0.15, 0.06),
+    white: Vec2(0.3127, 0.3290),
+};
+
+/// Writes all layers of `frame`.
+///
+/// # Errors
+/// See [`EncodeError`].
+pub fn encode(
+    frame: &Frame,
+    encoding: &Encoding,
+    metadata: &Metadata,
+) -> Result<Encoded, EncodeError> {
+    let mut channels: SmallVec<[AnyChannel<Plane<'_>>; 4]> = SmallVec::new();
+    let mut warnings = Vec::new();
+    let mut holds = Vec::new();
+    for (name, layer) in &frame.layers {
+        check(frame, *name, layer)?;
+        let format = exr_format(frame, *name);
+        let is_half = format.follows_exr_pixel && encoding.exr_pixel == ExrPixel::Half;
+        if is_half {
+            warnings.extend(half_warnings(format.word, layer));
+        }
+        holds.push(format.holds);
+        channels.extend(
+            format
+                .exr_channels
+                .iter()
+                .enumerate()
+                .map(|(index, channel)| {
+                    let plane = Plane {
+                        layer,
+                        index,
+                        is_half,
+                        width: frame.width as usize,
+                    };
+                    AnyChannel::new(*channel, plane)
+                }),
+        );
+    }
+
+    let size = Vec2(frame.width as usize, frame.height as usize);
+    let mut shared = ImageAttributes::new(IntegerBounds::from_dimensions(size));
+    shared.chromaticities = Some(REC_709);
+    let stats = metadata.stats_json(&warnings);
+    for (key, value) in [
+        (SCENE_HASH_KEY, metadata.scene_hash.as_str()),
+        (STATS_KEY, stats.as_str()),
+        ("colorInteropID", COLOR_INTEROP_ID),
+    ] {
+        let value = AttributeValue::Text(text(key, value)?);
+        shared.other.insert(text(key, key)?, value);
+    }
+    let own = LayerAttributes {
+        software_name: Some(text("software", &metadata.software())?),
+        comments: Some(text("comments", &format!("linear; {}", holds.join("; ")))?),
+        ..LayerAttributes::default()
+    };
+
+    let part = Part::new(
+        size,
+        own,
+        Blocks::SMALL_LOSSLESS,
+        AnyChannels::sort(channels),
+    );
+    let mut bytes = Vec::new();
+    Image::new(shared, part)
+        .write()
+        .to_buffered(std::io::Cursor::new(&mut bytes))
+        .map_err(|error| failed(error.to_string()))?;
+    sort_attributes(&mut bytes).map_err(|reason| failed(reason.to_owned()))?;
+    Ok(Encoded {
+        bytes,
+        media_type: MEDIA_TYPE,
+        warnings,
+    })
+}
+
+fn exr_format(frame: &Frame, name: LayerName) -> LayerFormat {
+    if is_irradiance_map(frame) {
+        IRRADIANCE_MAP
+    } else {
+        format_of(name)
+    }
+}
+
+fn failed(reason: String) -> EncodeError {
+    EncodeError::Format {
+        format: "EXR",
+        reason,
+    }
+}
+
+fn text(name: &'static str, value: &str) -> Result<Text, EncodeError> {
+    Text::new_or_none(value).ok_or(EncodeError::Text { name })
+}
+
+/// Nearest half, within its finite range.
+fn to_half(value: f32) -> f16 {
+    f16::from_f32(value.clamp(f16::MIN.to_f32(), f16::MAX.to_f32()))
+}
+
+/// What a layer loses when it is written as half.
+fn half_warnings(word: &str, layer: &Layer) -> Vec<Warning> {
+    let largest = f16::MAX.to_f32();
+    let clamped = layer.data.iter().filter(|v| v.abs() > largest).count();
+    let flushed = layer
+        .data
+        .iter()
+        .filter(|v| **v != 0.0 && to_half(**v).to_f32() == 0.0)
+        .count();
+    let values = layer.data.len();
+    let mut warnings = Vec::new();
+    if clamped > 0 {
+        warnings.push(Warning::new(
+            "half_clamped",
+            format!(
+                "{clamped} of {values} values of {word} are beyond 65504, the largest half, and were written as that; exr_pixel float keeps them"
+            ),
+        ));
+    }
+    if flushed > 0 {
+        warnings.push(Warning::new(
+            "half_flushed",
+            format!(
+                "{flushed} of {values} values of {word} are below 3e-8, too small for half, and were written as 0; exr_pixel float keeps them"
+            ),
+        ));
+    }
+    warnings
+}
+
+/// One channel of a layer, read where it lies: large frames are not copied.
+struct Plane<'a> {
+    layer: &'a Layer,
+    /// Which value of each pixel.
+    index: usize,
+    is_half: bool,
+    /// Pixels in a row.
+    width: usize,
+}
+
+impl<'s, 'a: 's> WritableSamples<'s> for Plane<'a> {
+    type Writer = &'s Self;
+
+    fn sample_type(&self) -> SampleType {
+        if self.is_half {
+            SampleType::F16
+        } else {
+            SampleType::F32
+        }
+    }
+
+    fn infer_level_modes(&self) -> (LevelMode, RoundingMode) {
+        (LevelMode::Singular, RoundingMode::Down)
+    }
+
+    fn create_samples_writer(&'s self, _header: &Header) -> &'s Self {
+        self
+    }
+}
+
+impl SamplesWriter for &Plane<'_> {
+    fn extract_line(&self, line: LineRefMut<'_>) {
+        let first = line.location.position.y() * self.width + line.location.position.x();
+        let value = |i: usize| {
+            let value = self.layer.data[(first + i) * self.layer.channels + self.index];
+            // Only a depth can be infinite here, see `layers::check`.
+            if value == f32::INFINITY {
+                FAR_DEPTH_M
+            } else {
+                value
+            }
+        };
+        if self.is_half {
+            line.write_samples(|i| to_half(value(i)))
+        } else {
+            line.write_samples(value)
+        }
+        .expect("the library hands out a line with room for its samples");
+    }
+}

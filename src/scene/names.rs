@@ -1,0 +1,92 @@
+//! What field names tell: their unit, and which field a misspelt one was meant to be.
+
+/// Suffix of a field name and the unit it stands for; longer suffixes first.
+const UNITS: [(&str, &str); 8] = [
+    ("_w_m2_sr", "W/(m² sr)"),
+    ("_w_m2", "W/m²"),
+    ("_per_m", "1/m"),
+    ("_deg", "degrees"),
+    ("_ev", "stops"),
+    ("_cells", "cells"),
+    ("_m", "m"),
+    ("_s", "s"),
+];
+
+/// The longest name that is compared letter by letter.
+const MAX_COMPARED: usize = 64;
+
+/// The unit a field name carries.
+pub(super) fn unit_of(field: &str) -> Option<&'static str> {
+    UNITS
+        .iter()
+        .find(|(suffix, _)| field.ends_with(suffix))
+        .map(|(_, unit)| *unit)
+}
+
+/// The field that `given` was probably meant to be.
+pub(super) fn meant<'a>(given: &str, fields: &[&'a str]) -> Option<&'a str> {
+    let given = snake_case(given);
+    let same_stem = |field: &&&str| {
+        let stem = stem_of(field);
+        stem == given || (stem == stem_before_unit(&given) && stem != **field)
+    };
+    if let Some(field) = fields.iter().find(same_stem) {
+        return Some(field);
+    }
+    if given.len() > MAX_COMPARED {
+        return None;
+    }
+    fields
+        .iter()
+        .map(|field| (edits(&given, field), *field))
+        .filter(|(edits, field)| *edits <= 2 && edits * 3 <= field.len())
+        .min()
+        .map(|(_, field)| field)
+}
+
+/// `waterCells` and `water-cells` as `water_cells`.
+fn snake_case(name: &str) -> String {
+    let mut snake = String::new();
+    for c in name.chars() {
+        if c.is_uppercase() && !snake.is_empty() && !snake.ends_with('_') {
+            snake.push('_');
+        }
+        match c {
+            '-' | ' ' => snake.push('_'),
+            _ => snake.extend(c.to_lowercase()),
+        }
+    }
+    snake
+}
+
+/// `depth` of `depth_m`; a field without unit is its own stem.
+fn stem_of(field: &str) -> &str {
+    UNITS
+        .iter()
+        .find_map(|(suffix, _)| field.strip_suffix(suffix))
+        .unwrap_or(field)
+}
+
+/// `depth` of `depth_cm`: the name before what may be a unit of somebody else's.
+fn stem_before_unit(name: &str) -> &str {
+    match name.rsplit_once('_') {
+        Some((stem, unit)) if unit.len() <= 4 => stem,
+        _ => name,
+    }
+}
+
+/// Levenshtein distance: the fewest letters to put in, take out or replace.
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, a_letter) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, b_letter) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(a_letter != *b_letter);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}

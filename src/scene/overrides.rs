@@ -1,0 +1,206 @@
+//! Single fields of a scene replaced from outside, as by command-line flags.
+//!
+//! Which fields there are follows from the types, so a new field of `quality` or `output` has its flag without a second
+//! edit. Values are put into the JSON before it is read: whatever is wrong with them is said by the same words as if they
+//! had stood in the scene.
+
+use serde_json::{Map, Number, Value, json};
+use utoipa::openapi::{RefOr, Schema};
+use utoipa::{PartialSchema, ToSchema};
+
+use super::types::{IrradianceMapOutput, Output, Quality, ViewOutput};
+
+/// A field that may be replaced.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Its name in the scene.
+    pub name: String,
+    /// JSON pointer to it.
+    pub pointer: String,
+    /// What it means: the text of `openapi.yaml`.
+    pub help: String,
+    /// Words it may hold, empty where it holds numbers.
+    pub words: Vec<String>,
+    /// Whether it holds several values, which are then separated by commas.
+    pub is_list: bool,
+}
+
+impl Field {
+    /// Its flag without the dashes in front: `water-cells`.
+    pub fn flag(&self) -> String {
+        self.name.replace('_', "-")
+    }
+}
+
+/// Every field of `quality` and of all kinds of `output`, in the order of their names; a field that several kinds share is
+/// there once.
+pub fn fields() -> Vec<Field> {
+    let mut fields = fields_of::<Quality>("/quality");
+    fields.sort_by(|a, b| a.name.cmp(&b.name));
+    let mut outputs = fields_of::<ViewOutput>("/output");
+    for field in fields_of::<IrradianceMapOutput>("/output") {
+        match outputs.iter_mut().find(|known| known.name == field.name) {
+            Some(known) => merge(known, field),
+            None => outputs.push(field),
+        }
+    }
+    outputs.sort_by(|a, b| a.name.cmp(&b.name));
+    fields.extend(outputs);
+    fields
+}
+
+/// Joins what two kinds of output say about a field of the same name.
+fn merge(known: &mut Field, other: Field) {
+    if known.help != other.help {
+        known.help = format!("View: {} Irradiance map: {}", known.help, other.help);
+    }
+    for word in other.words {
+        if !known.words.contains(&word) {
+            known.words.push(word);
+        }
+    }
+}
+
+/// Replaces the values at some pointers, in order; later ones win.
+///
+/// A missing `output` becomes a view. A place that cannot be reached, because something that is no object stands in the way,
+/// is left as it is: reading the scene will refuse it.
+pub fn apply(value: &mut Value, overrides: &[(String, String)]) {
+    let known = fields();
+    // The kind first: it decides what else is accepted, and a missing output needs one.
+    let is_kind = |pointer: &str| pointer == "/output/kind";
+    let (kinds, others): (Vec<_>, Vec<_>) =
+        overrides.iter().partition(|(pointer, _)| is_kind(pointer));
+    for (pointer, text) in kinds.into_iter().chain(others) {
+        let is_list = known
+            .iter()
+            .any(|field| field.pointer == *pointer && field.is_list);
+        let replacement = if is_list { list(text) } else { single(text) };
+        replace(value, pointer, replacement);
+    }
+}
+
+fn replace(value: &mut Value, pointer: &str, replacement: Value) {
+    let Some((parent, name)) = pointer.rsplit_once('/') else {
+        return;
+    };
+    let mut place = value;
+    for key in parent.split('/').skip(1) {
+        let Value::Object(members) = place else {
+            return;
+        };
+        place = members
+            .entry(key)
+            .and_modify(|there| {
+                if there.is_null() {
+                    *there = fresh(key);
+                }
+            })
+            .or_insert_with(|| fresh(key));
+    }
+    if let Value::Object(members) = place {
+        members.insert(name.to_owned(), replacement);
+    }
+}
+
+/// What a missing object is before its fields are put in.
+fn fresh(key: &str) -> Value {
+    let default_output = || serde_json::to_value(Output::default()).unwrap_or_default();
+    match key {
+        "output" => json!({ "kind": default_output()["kind"] }),
+        _ => Value::Object(Map::new()),
+    }
+}
+
+fn list(text: &str) -> Value {
+    let items = text.split(',').map(str::trim);
+    Value::Array(items.filter(|item| !item.is_empty()).map(single).collect())
+}
+
+/// A number, `true`, `false`, or else a word.
+fn single(text: &str) -> Value {
+    let text = text.trim();
+    match serde_json::from_str(text) {
+        Ok(value @ (Value::Number(_) | Value::Bool(_))) => value,
+        // Rust reads `.5` and `+1` too, which JSON does not.
+        _ => text
+            .parse()
+            .ok()
+            .and_then(Number::from_f64)
+            .map_or_else(|| Value::String(text.to_owned()), Value::Number),
+    }
+}
+
+fn fields_of<T: PartialSchema + ToSchema>(section: &str) -> Vec<Field> {
+    let mut components: Vec<(String, RefOr<Schema>)> = Vec::new();
+    T::schemas(&mut components);
+    let words_of = |reference: &str| {
+        components
+            .iter()
+            .find(|(name, _)| reference.ends_with(&format!("/{name}")))
+            .map(|(_, schema)| words(&as_json(schema)))
+            .unwrap_or_default()
+    };
+    let schema = as_json(&T::schema());
+    let Some(properties) = schema["properties"].as_object() else {
+        return Vec::new();
+    };
+    properties
+        .iter()
+        .map(|(name, property)| Field {
+            name: name.clone(),
+            pointer: format!("{section}/{name}"),
+            help: help(property),
+            words: references(property)
+                .iter()
+                .flat_map(|reference| words_of(reference))
+                .collect(),
+            is_list: is_array(property),
+        })
+        .collect()
+}
+
+fn as_json(schema: &RefOr<Schema>) -> Value {
+    serde_json::to_value(schema).unwrap_or_default()
+}
+
+/// The documentation of a property, as one line.
+fn help(property: &Value) -> String {
+    let text = property["description"].as_str().unwrap_or_default();
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Whether a property is an array, or an array or null.
+fn is_array(property: &Value) -> bool {
+    match &property["type"] {
+        Value::String(name) => name == "array",
+        Value::Array(names) => names.iter().any(|name| name == "array"),
+        _ => false,
+    }
+}
+
+/// The words of an enumeration: `enum`, or `const`s of a `oneOf`.
+fn words(schema: &Value) -> Vec<String> {
+    let named = schema["enum"].as_array().into_iter().flatten();
+    let alternatives = schema["oneOf"].as_array().into_iter().flatten();
+    named
+        .cloned()
+        .chain(alternatives.flat_map(|one| one["enum"].as_array().cloned().unwrap_or_default()))
+        .filter_map(|word| word.as_str().map(str::to_owned))
+        .collect()
+}
+
+/// All `$ref`s in a property.
+fn references(property: &Value) -> Vec<String> {
+    match property {
+        Value::Object(members) => members
+            .iter()
+            .flat_map(|(key, value)| match (key.as_str(), value) {
+                ("$ref", Value::String(target)) => vec![target.clone()],
+                _ => references(value),
+            })
+            .collect(),
+        Value::Array(items) => items.iter().flat_map(references).collect(),
+        _ => Vec::new(),
+    }
+}

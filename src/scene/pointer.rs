@@ -1,0 +1,29 @@
+//! Where in a document: a path that becomes a JSON pointer (RFC 6901) only when something is wrong.
+
+use std::fmt;
+
+/// A place in a JSON document, linked from the inside out.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Path<'a> {
+    /// The whole document.
+    Root,
+    /// A member of an object.
+    Key(&'a Path<'a>, &'a str),
+    /// An element of an array.
+    Index(&'a Path<'a>, usize),
+}
+
+impl fmt::Display for Path<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Root => Ok(()),
+            Self::Key(parent, key) => write!(f, "{parent}{}", member(key)),
+            Self::Index(parent, index) => write!(f, "{parent}/{index}"),
+        }
+    }
+}
+
+/// The pointer from an object to one of its members.
+pub(super) fn member(key: &str) -> String {
+    format!("/{}", key.replace('~', "~0").replace('/', "~1"))
+}

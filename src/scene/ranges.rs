@@ -1,0 +1,176 @@
+//! The ranges of a scene's numbers. Those of integers are types, so that `types` can name them where a field is read.
+
+use std::fmt;
+
+/// A closed range of f64 with its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Smallest accepted value.
+    pub min: f64,
+    /// Largest accepted value.
+    pub max: f64,
+    /// Unit, empty for pure numbers.
+    pub unit: &'static str,
+}
+
+impl Range {
+    const fn new(min: f64, max: f64, unit: &'static str) -> Self {
+        Self { min, max, unit }
+    }
+
+    /// Whether `value` lies inside; NaN does not.
+    pub fn contains(&self, value: f64) -> bool {
+        (self.min..=self.max).contains(&value)
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (min, max) = (number(self.min), number(self.max));
+        write!(f, "a number, {min} … {max}")?;
+        match self.unit {
+            "" => Ok(()),
+            unit => write!(f, " {unit}"),
+        }
+    }
+}
+
+/// A number as people write it: powers of ten where zeros would have to be counted.
+pub(super) fn number(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude != 0.0 && !(1e-3..1e6).contains(&magnitude) {
+        format!("{value:e}")
+    } else {
+        value.to_string()
+    }
+}
+
+/// `time_s`.
+pub const TIME: Range = Range::new(-1e12, 1e12, "s");
+/// Positions, translations, corners and the water level.
+pub const COORDINATE: Range = Range::new(-1e6, 1e6, "m");
+/// `floor.size_m`, the height of an orthographic picture.
+pub const EXTENT: Range = Range::new(1e-6, 1e6, "m");
+/// Angles that may go round.
+pub const TURNING_ANGLE: Range = Range::new(-1e6, 1e6, "degrees");
+/// `water.ior`.
+pub const IOR: Range = Range::new(1.0, 4.0, "");
+/// `water.absorption_per_m` and `water.scattering_per_m`.
+pub const COEFFICIENT: Range = Range::new(0.0, 1e4, "1/m");
+/// `amplitude_m`.
+pub const AMPLITUDE: Range = Range::new(0.0, 100.0, "m");
+/// `wavelength_m`.
+pub const WAVELENGTH: Range = Range::new(1e-3, 1e5, "m");
+/// `period_s`.
+pub const PERIOD: Range = Range::new(1e-6, 1e12, "s");
+/// `floor.depth_m`.
+pub const DEPTH: Range = Range::new(0.0, 11_000.0, "m");
+/// Diffuse reflectances.
+pub const ALBEDO: Range = Range::new(0.0, 1.0, "");
+/// `elevation_deg`.
+pub const ELEVATION: Range = Range::new(-90.0, 90.0, "degrees");
+/// `irradiance_w_m2`.
+pub const IRRADIANCE: Range = Range::new(0.0, 1e9, "W/m²");
+/// `radiance_w_m2_sr`.
+pub const RADIANCE: Range = Range::new(0.0, 1e9, "W/(m² sr)");
+/// `scale`.
+pub const SCALE: Range = Range::new(1e-6, 1e6, "");
+/// Components of `up`.
+pub const UP: Range = Range::new(-1e6, 1e6, "");
+/// `vertical_fov_deg`.
+pub const FIELD_OF_VIEW: Range = Range::new(0.1, 179.0, "degrees");
+/// `exposure_ev`.
+pub const EXPOSURE: Range = Range::new(-40.0, 40.0, "stops");
+
+/// Texels along a side of a floor map that does not say.
+pub const DEFAULT_MAP_SIDE: u32 = 512;
+
+/// The range of an integer field.
+pub trait Integer {
+    /// Smallest accepted value.
+    const MIN: u32;
+    /// Largest accepted value.
+    const MAX: u32;
+
+    /// What is accepted, in words.
+    fn accepted() -> String {
+        format!("an integer, {} … {}", Self::MIN, Self::MAX)
+    }
+
+    /// Whether `value` is accepted.
+    fn accepts(value: u32) -> bool {
+        (Self::MIN..=Self::MAX).contains(&value)
+    }
+}
+
+/// Declares the ranges of integer fields.
+macro_rules! integers {
+    ($($(#[$doc:meta])* $name:ident = $min:literal ..= $max:expr;)+) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $name;
+
+        impl Integer for $name {
+            const MIN: u32 = $min;
+            const MAX: u32 = $max;
+        }
+    )+};
+}
+
+integers! {
+    /// `quality.water_cells`.
+    WaterCells = 2..=2048;
+    /// `quality.map_texels`.
+    MapTexels = 16..=4096;
+    /// `quality.level_map_texels`.
+    LevelMapTexels = 16..=2048;
+    /// `quality.split_levels`.
+    SplitLevels = 0..=4;
+    /// `width` and `height` of a view.
+    ViewSide = 1..=16_384;
+    /// `width` and `height` of a map.
+    MapSide = 1..=8192;
+}
+
+/// `png_bits`.
+#[derive(Clone, Copy, Debug)]
+pub struct PngBits;
+
+impl Integer for PngBits {
+    const MIN: u32 = 8;
+    const MAX: u32 = 16;
+
+    fn accepted() -> String {
+        "8 or 16".to_owned()
+    }
+
+    fn accepts(value: u32) -> bool {
+        value == 8 || value == 16
+    }
+}
+
+/// `output.light`; whether there is such a light is checked where the lights are known.
+#[derive(Clone, Copy, Debug)]
+pub struct LightIndex;
+
+impl Integer for LightIndex {
+    const MIN: u32 = 0;
+    const MAX: u32 = u32::MAX;
+
+    fn accepted() -> String {
+        "an index into `lights`".to_owned()
+    }
+}
+
+/// `output.receiver` where it is a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct ReceiverIndex;
+
+impl Integer for ReceiverIndex {
+    const MIN: u32 = 0;
+    const MAX: u32 = u32::MAX;
+
+    fn accepted() -> String {
+        "\"floor\" or an index into `objects`".to_owned()
+    }
+}

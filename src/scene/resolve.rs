@@ -1,0 +1,65 @@
+//! From mesh ids to meshes: the step between a scene that is valid and one that can be rendered.
+
+use std::sync::Arc;
+
+use super::error::{Issue, IssueKind, SceneError};
+use super::types::Scene;
+use crate::config::Limits;
+use crate::mesh::Mesh;
+
+/// A validated scene with the meshes its objects name: all a frame needs.
+#[derive(Clone, Debug)]
+pub struct ResolvedScene {
+    /// The scene as asked for.
+    pub scene: Scene,
+    /// The mesh of each object, in the order of `scene.objects`.
+    pub meshes: Vec<Arc<Mesh>>,
+}
+
+impl ResolvedScene {
+    /// `blake3:…` of the canonical JSON of the scene; meshes are in it by their content ids.
+    pub fn hash(&self) -> String {
+        let canonical = serde_json::to_vec(&self.scene).expect("a scene always serialises");
+        format!("blake3:{}", blake3::hash(&canonical).to_hex())
+    }
+}
+
+/// Validates a scene and looks up the mesh of every object.
+///
+/// # Errors
+///
+/// All findings of [`Scene::validate`] and every unknown mesh together. [`SceneError::kind`] is
+/// [`IssueKind::UnknownMesh`] only when nothing but meshes is missing.
+pub fn resolve(
+    scene: Scene,
+    limits: &Limits,
+    lookup: impl Fn(&str) -> Option<Arc<Mesh>>,
+) -> Result<ResolvedScene, SceneError> {
+    let mut issues = scene
+        .validate(limits)
+        .err()
+        .map_or_else(Vec::new, |error| error.issues);
+    let mut meshes = Vec::with_capacity(scene.objects.len().min(limits.max_objects));
+    for (index, object) in scene.objects.iter().take(limits.max_objects).enumerate() {
+        match lookup(&object.mesh) {
+            Some(mesh) => meshes.push(mesh),
+            // An empty id has been found by `validate`.
+            None if object.mesh.is_empty() => {}
+            None => issues.push(unknown_mesh(index, &object.mesh)),
+        }
+    }
+    if issues.is_empty() {
+        Ok(ResolvedScene { scene, meshes })
+    } else {
+        Err(SceneError { issues })
+    }
+}
+
+fn unknown_mesh(index: usize, id: &str) -> Issue {
+    Issue::invalid(
+        format!("/objects/{index}/mesh"),
+        format!("there is no mesh `{}`", super::strict::quoted(id)),
+        "the id of an uploaded mesh, `blake3:…` as answered by POST /v1/meshes",
+    )
+    .of_kind(IssueKind::UnknownMesh)
+}

@@ -1,0 +1,237 @@
+//! Whether what is asked for can be made from the rest of the scene.
+
+use super::findings::Findings;
+use super::ranges;
+use super::strict::quoted;
+use super::types::{
+    Floor, ImageFormat, IrradianceMapOutput, LayerName, Light, Output, Receiver, Scene, ViewOutput,
+};
+use crate::config::Limits;
+
+pub(super) fn output(findings: &mut Findings, scene: &Scene, limits: &Limits) {
+    match &scene.output {
+        Output::View(output) => view(findings, scene, output, limits),
+        Output::IrradianceMap(output) => {
+            findings.integer::<ranges::PngBits>("/output/png_bits", output.png_bits);
+            findings.number("/output/exposure_ev", output.exposure_ev, &ranges::EXPOSURE);
+            light(findings, scene, output);
+            match output.receiver {
+                Receiver::Floor(_) => floor_map(findings, scene, output, limits),
+                Receiver::Object(index) => mesh_map(findings, scene, output, index, limits),
+            }
+        }
+    }
+}
+
+fn view(findings: &mut Findings, scene: &Scene, output: &ViewOutput, limits: &Limits) {
+    if scene.camera.is_none() {
+        findings.invalid(
+            "/camera",
+            "missing field `camera`: a view is taken from somewhere",
+            "a camera with `position_m` and `target_m`, or another `output.kind`",
+        );
+    }
+    let mut is_sized = findings.integer::<ranges::ViewSide>("/output/width", output.width);
+    is_sized &= findings.integer::<ranges::ViewSide>("/output/height", output.height);
+    if is_sized {
+        let size = [output.width, output.height];
+        pixels(findings, "/output", size, limits);
+    }
+    findings.integer::<ranges::PngBits>("/output/png_bits", output.png_bits);
+    findings.number("/output/exposure_ev", output.exposure_ev, &ranges::EXPOSURE);
+    layers(findings, output);
+}
+
+fn layers(findings: &mut Findings, output: &ViewOutput) {
+    if output.layers.is_empty() {
+        let detail = "no layer is asked for";
+        findings.invalid("/output/layers", detail, "at least one layer");
+    }
+    for (index, layer) in output.layers.iter().enumerate() {
+        let pointer = format!("/output/layers/{index}");
+        if output.layers[..index].contains(layer) {
+            findings.invalid(pointer, "the layer is named twice", "each layer once");
+        } else if output.format == ImageFormat::Png && *layer != LayerName::Radiance {
+            findings.invalid(
+                pointer,
+                "PNG has no room for this layer",
+                "`radiance` alone, or `output.format` = `exr`",
+            );
+        }
+        // A long list consists of repetitions.
+        if index > 2 * LAYER_COUNT {
+            break;
+        }
+    }
+}
+
+/// How many layers there are to name.
+const LAYER_COUNT: usize = 6;
+
+fn pixels(findings: &mut Findings, pointer: &str, [width, height]: [u32; 2], limits: &Limits) {
+    let count = u64::from(width) * u64::from(height);
+    if count > limits.max_pixels {
+        findings.over_limit(
+            pointer,
+            format!("{width} × {height} are {count} pixels"),
+            format!("width × height of at most {}", limits.max_pixels),
+        );
+    }
+}
+
+/// Indices of the suns, in words.
+fn suns_of(scene: &Scene) -> (usize, String) {
+    let suns: Vec<String> = scene
+        .lights
+        .iter()
+        .enumerate()
+        .filter(|(_, light)| matches!(light, Light::Sun(_)))
+        .map(|(index, _)| index.to_string())
+        .collect();
+    let accepted = match suns.len() {
+        0 => "no index: the scene has no sun".to_owned(),
+        _ => format!("the index of a sun: {}", quoted(&suns.join(", "))),
+    };
+    (suns.len(), accepted)
+}
+
+fn light(findings: &mut Findings, scene: &Scene, output: &IrradianceMapOutput) {
+    let (sun_count, accepted) = suns_of(scene);
+    match (output.light, output.receiver) {
+        (Some(index), _) => match scene.lights.get(index as usize) {
+            Some(Light::Sun(_)) => {}
+            Some(Light::Sky(_)) => {
+                let detail = format!("light {index} is a sky");
+                findings.invalid("/output/light", detail, accepted);
+            }
+            None => {
+                let detail = format!("there is no light {index}");
+                findings.invalid("/output/light", detail, accepted);
+            }
+        },
+        (None, Receiver::Object(_)) if sun_count > 1 => findings.invalid(
+            "/output/light",
+            format!(
+                "missing field `light`: each of the {sun_count} suns has its own map on a mesh"
+            ),
+            accepted,
+        ),
+        (None, _) => {}
+    }
+}
+
+fn mesh_map(
+    findings: &mut Findings,
+    scene: &Scene,
+    output: &IrradianceMapOutput,
+    index: u32,
+    limits: &Limits,
+) {
+    let count = scene.objects.len();
+    if index as usize >= count {
+        let accepted = match count {
+            0 => "\"floor\": the scene has no objects".to_owned(),
+            _ => format!("\"floor\" or an index into `objects`, 0 … {}", count - 1),
+        };
+        findings.invalid(
+            "/output/receiver",
+            format!("there is no object {index}"),
+            accepted,
+        );
+    }
+    let floor_only = [
+        ("min_m", output.min_m.is_some()),
+        ("max_m", output.max_m.is_some()),
+        ("width", output.width.is_some()),
+        ("height", output.height.is_some()),
+    ];
+    for (field, _) in floor_only.iter().filter(|(_, is_there)| *is_there) {
+        findings.invalid(
+            format!("/output/{field}"),
+            format!("`{field}` is for the floor only"),
+            "nothing: the map of a mesh spans its level map, `quality.level_map_texels` squared",
+        );
+    }
+    let side = scene.quality.level_map_texels;
+    pixels(findings, "/quality/level_map_texels", [side, side], limits);
+}
+
+fn floor_map(
+    findings: &mut Findings,
+    scene: &Scene,
+    output: &IrradianceMapOutput,
+    limits: &Limits,
+) {
+    let mut is_sized = true;
+    for (pointer, side) in [
+        ("/output/width", output.width),
+        ("/output/height", output.height),
+    ] {
+        is_sized &= side.is_none_or(|side| findings.integer::<ranges::MapSide>(pointer, side));
+    }
+    if is_sized {
+        let side_of = |side: Option<u32>| side.unwrap_or(ranges::DEFAULT_MAP_SIDE);
+        let size = [side_of(output.width), side_of(output.height)];
+        pixels(findings, "/output", size, limits);
+    }
+    match &scene.floor {
+        Some(floor) => window(findings, floor, output),
+        None => findings.invalid(
+            "/output/receiver",
+            "the scene has no floor",
+            "an index into `objects`, or a scene with a `floor`",
+        ),
+    }
+}
+
+fn window(findings: &mut Findings, floor: &Floor, output: &IrradianceMapOutput) {
+    let mut is_sound = true;
+    for (pointer, corner) in [
+        ("/output/min_m", output.min_m),
+        ("/output/max_m", output.max_m),
+    ] {
+        if let Some(corner) = corner {
+            is_sound &= findings.numbers(pointer, &corner, &ranges::COORDINATE);
+        }
+    }
+    // The one that is given is the one to point at.
+    let given = if output.max_m.is_some() {
+        "max_m"
+    } else {
+        "min_m"
+    };
+    if !is_sound || (output.min_m.is_none() && output.max_m.is_none()) {
+        return;
+    }
+    let floor_min = [0, 1].map(|i| floor.center_m[i] - floor.size_m[i] / 2.0);
+    let floor_max = [0, 1].map(|i| floor.center_m[i] + floor.size_m[i] / 2.0);
+    let min = output.min_m.unwrap_or(floor_min);
+    let max = output.max_m.unwrap_or(floor_max);
+    for axis in [0, 1] {
+        let name = ["x", "z"][axis];
+        if max[axis] - min[axis] < ranges::EXTENT.min {
+            findings.invalid(
+                format!("/output/{given}/{axis}"),
+                format!(
+                    "along {name} the window reaches from {} to {} m",
+                    min[axis], max[axis]
+                ),
+                format!(
+                    "`min_m` below `max_m`, by {} m or more",
+                    ranges::number(ranges::EXTENT.min)
+                ),
+            );
+            is_sound = false;
+        }
+    }
+    let is_beside = |axis: usize| max[axis] <= floor_min[axis] || min[axis] >= floor_max[axis];
+    if is_sound && (is_beside(0) || is_beside(1)) {
+        findings.invalid(
+            format!("/output/{given}"),
+            format!("the window from {min:?} to {max:?} m lies beside the floor"),
+            format!(
+                "a window that meets the floor, which reaches from {floor_min:?} to {floor_max:?} m"
+            ),
+        );
+    }
+}
