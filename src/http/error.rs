@@ -72,8 +72,8 @@ macro_rules! problem_kinds {
 }
 
 problem_kinds! {
-    /// 400: the body of a scene request is not JSON.
-    MalformedJson = BAD_REQUEST, "malformed-json", "The body is not JSON", Request;
+    /// 400: the body of a scene request is not JSON, or has a number that no 64-bit float holds.
+    MalformedJson = BAD_REQUEST, "malformed-json", "The body is not JSON that can be read", Request;
     /// 400: the body cannot be read (broken multipart, connection trouble).
     MalformedBody = BAD_REQUEST, "malformed-body", "The body cannot be read", Request;
     /// 404: no such route.
@@ -120,6 +120,11 @@ impl ProblemKind {
     /// Whether the same request may succeed later.
     pub fn retryable(self) -> bool {
         matches!(self.reason(), Reason::Capacity | Reason::Device)
+    }
+
+    /// Whether `Retry-After` says when: not for a mesh store, which somebody has to clear.
+    pub fn sends_retry_after(self) -> bool {
+        self.retryable() && self != Self::MeshStoreFull
     }
 }
 
@@ -214,13 +219,12 @@ impl ApiError {
 
     /// Seconds after which the same request may succeed, where that is known.
     pub fn retry_after_s(&self) -> Option<u64> {
-        match (self, self.kind().reason()) {
-            (Self::Job(JobError::QueueFull { retry_after_s, .. }), _) => Some(*retry_after_s),
-            (_, Reason::Device) => Some(RECOVERY_RETRY_AFTER_S),
-            (_, Reason::Capacity) if self.kind() == ProblemKind::DeadlinePassed => {
-                Some(RECOVERY_RETRY_AFTER_S)
-            }
-            _ => None,
+        match self {
+            Self::Job(JobError::QueueFull { retry_after_s, .. }) => Some(*retry_after_s),
+            _ => self
+                .kind()
+                .sends_retry_after()
+                .then_some(RECOVERY_RETRY_AFTER_S),
         }
     }
 

@@ -27,6 +27,6 @@ pub mod state;
 pub use error::{ApiError, ProblemKind};
 pub use openapi::openapi;
 pub use problem::Problem;
-pub use router::app;
-pub use server::{ServeError, serve, serve_on};
+pub use router::{app, layered};
+pub use server::{ServeError, serve, serve_on, serve_with};
 pub use state::AppState;

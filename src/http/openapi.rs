@@ -17,7 +17,7 @@ use crate::scene::Scene;
             Right-handed, Y up, metres, seconds, SI radiometry; angles in degrees; linear RGB. Unknown fields are errors. \
             Every failure is `application/problem+json` with a stable `type`; every answer carries `x-request-id`. \
             Any route may also answer 404, 405 and 503 (`urn:caustica:problem:deadline-passed`).",
-        license(name = "MIT OR Apache-2.0")
+        license(name = "MIT or Apache 2.0", identifier = "MIT OR Apache-2.0")
     ),
     tags(
         (name = "render", description = "Scenes to pictures."),

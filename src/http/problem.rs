@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use utoipa::openapi::{ContentBuilder, Ref, RefOr, Response, ResponseBuilder};
-use utoipa::{IntoResponses, ToSchema};
+use utoipa::openapi::{ContentBuilder, Header, Ref, RefOr, Response, ResponseBuilder};
+use utoipa::{IntoResponses, PartialSchema as _, ToSchema};
 
 use super::error::{ApiError, ProblemKind, Reason};
 use crate::jobs::JobError;
@@ -144,26 +144,33 @@ problem_sets! {
 
 /// One response per status, listing the types behind it.
 fn documented(kinds: &[ProblemKind]) -> BTreeMap<String, RefOr<Response>> {
-    let mut lines: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut by_status: BTreeMap<String, Vec<ProblemKind>> = BTreeMap::new();
     for kind in kinds {
-        lines
-            .entry(kind.status().as_str().to_owned())
-            .or_default()
-            .push(format!("`{}`: {}.", kind.urn(), kind.title()));
+        let status = kind.status().as_str().to_owned();
+        by_status.entry(status).or_default().push(*kind);
     }
-    lines
+    by_status
         .into_iter()
-        .map(|(status, lines)| {
-            let response = ResponseBuilder::new()
-                .description(lines.join("\n\n"))
-                .content(
-                    MEDIA_TYPE,
-                    ContentBuilder::new()
-                        .schema(Some(Ref::from_schema_name("Problem")))
-                        .build(),
-                )
-                .build();
-            (status, RefOr::T(response))
-        })
+        .map(|(status, kinds)| (status, RefOr::T(response(&kinds))))
         .collect()
+}
+
+/// The kinds of one status.
+fn response(kinds: &[ProblemKind]) -> Response {
+    let lines: Vec<String> = kinds
+        .iter()
+        .map(|kind| format!("`{}`: {}.", kind.urn(), kind.title()))
+        .collect();
+    let content = ContentBuilder::new()
+        .schema(Some(Ref::from_schema_name("Problem")))
+        .build();
+    let mut response = ResponseBuilder::new()
+        .description(lines.join("\n\n"))
+        .content(MEDIA_TYPE, content);
+    if kinds.iter().any(|kind| kind.sends_retry_after()) {
+        let mut header = Header::new(u64::schema());
+        header.description = Some("Seconds after which to try again.".to_owned());
+        response = response.header("retry-after", header);
+    }
+    response.build()
 }

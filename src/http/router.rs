@@ -36,8 +36,13 @@ pub(super) fn api() -> OpenApiRouter<AppState> {
 /// The whole service.
 pub fn app(state: AppState) -> Router {
     let (routes, _) = api().split_for_parts();
+    layered(routes.merge(docs::swagger()), state)
+}
+
+/// What surrounds the routes, whatever they are: ids, log, metrics, deadline, body limit, and problems for what no route
+/// answers.
+pub fn layered(routes: Router<AppState>, state: AppState) -> Router {
     routes
-        .merge(docs::swagger())
         .fallback(no_route)
         .method_not_allowed_fallback(no_method)
         // From the inside out.

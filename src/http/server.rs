@@ -11,6 +11,7 @@ use tokio_util::sync::CancellationToken;
 use super::router::app;
 use super::state::AppState;
 use crate::config::{Limits, RenderConfig, ServeConfig};
+use crate::gpu::GpuError;
 use crate::jobs::{GpuQueue, GpuState, GpuStatus, QueueSettings, RenderBackend};
 use crate::render::Renderer;
 
@@ -57,16 +58,39 @@ pub async fn serve(
             address: serve.listen,
             source,
         })?;
+    let config = render.clone();
+    let factory = move || {
+        let renderer = Renderer::new(&config)?;
+        Ok(Box::new(renderer) as Box<dyn RenderBackend>)
+    };
+    serve_with(listener, factory, render, limits, &serve).await
+}
+
+/// [`serve`] on a bound socket, with backends from `factory`; `serve.listen` is not looked at.
+///
+/// # Errors
+/// As [`serve`].
+pub async fn serve_with<F>(
+    listener: TcpListener,
+    factory: F,
+    render: RenderConfig,
+    limits: Limits,
+    serve: &ServeConfig,
+) -> Result<(), ServeError>
+where
+    F: FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send + 'static,
+{
     tracing::info!(address = %listener.local_addr()?, "listening");
     let mut signals = Signals::new()?;
-    let queue = start_queue(&render, &serve)?;
+    let settings = QueueSettings {
+        waiting: serve.queue,
+        deadline: Duration::from_secs(serve.deadline_s),
+    };
+    let queue = GpuQueue::start(settings, factory)?;
     let state = AppState::new(queue.clone(), limits, render);
     let stop = CancellationToken::new();
-    let stopping = stop.clone();
     let drain = Duration::from_secs(serve.drain_s);
-    let served = serve_on(listener, state, drain, async move {
-        stopping.cancelled().await;
-    });
+    let served = serve_on(listener, state, drain, stop.clone().cancelled_owned());
     let signalled = async {
         signals.next().await;
         stop.cancel();
@@ -126,18 +150,6 @@ pub async fn serve_on(
         }
         () = upkeep => Ok(()),
     }
-}
-
-fn start_queue(render: &RenderConfig, serve: &ServeConfig) -> io::Result<GpuQueue> {
-    let settings = QueueSettings {
-        waiting: serve.queue,
-        deadline: Duration::from_secs(serve.deadline_s),
-    };
-    let render = render.clone();
-    GpuQueue::start(settings, move || {
-        let renderer = Renderer::new(&render)?;
-        Ok(Box::new(renderer) as Box<dyn RenderBackend>)
-    })
 }
 
 /// Resolves with the reason if the first try to open a device fails; never otherwise.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use ::png::{BitDepth, ColorType, EncodingError, SrgbRenderingIntent};
+use ::png::{BitDepth, ColorType, Compression, EncodingError, SrgbRenderingIntent};
 use rayon::prelude::*;
 
 use crate::frame::{Frame, Layer};
@@ -198,6 +198,8 @@ fn file(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(depth);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    // A noisy 960 x 540 picture takes 6 ms and 1.2 MB so, 126 ms and 0.6 MB with `Balanced`: somebody waits for the answer.
+    encoder.set_compression(Compression::Fast);
     let texts = [
         (SCENE_HASH_KEY, metadata.scene_hash.clone()),
         (STATS_KEY, metadata.stats_json(warnings)),

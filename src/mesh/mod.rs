@@ -1,14 +1,26 @@
-//! Meshes: OBJ and MTL in (`obj`), what was mended (`report`), a ray hierarchy over the triangles (`hierarchy`), and the store (`store`).
+//! Meshes: OBJ and MTL in (`obj`, with `scan`, `mtl` and `text` that check the texts first), what was mended (`repair`), why one was
+//! refused (`error`), a ray hierarchy over the triangles (`hierarchy`), the store (`store`) and what it tells (`info`).
 
+mod error;
 pub mod hierarchy;
+mod info;
+mod mtl;
 pub mod obj;
+mod repair;
+mod scan;
 pub mod store;
+mod text;
 
 use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
+pub use error::MeshError;
 pub use hierarchy::HierarchyNode;
-pub use obj::MeshError;
-pub use store::{Inserted, MeshInfo, MeshStore};
+pub use info::{MeshBounds, MeshInfo};
+pub use mtl::DEFAULT_ALBEDO;
+pub use scan::MAX_COORDINATE_M;
+pub use store::{Inserted, MeshStore};
 
 /// A triangle mesh, immutable after reading.
 #[derive(Clone, Debug)]
@@ -43,7 +55,7 @@ pub struct Triangle {
 }
 
 /// A diffuse material.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Material {
     /// Name in the file; empty for the default material.
     pub name: String,

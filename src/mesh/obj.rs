@@ -1,19 +1,208 @@
-//! OBJ and MTL in (minimal stand-in; the mesh branch's version wins).
+//! OBJ and MTL in: bytes to [`Mesh`].
+//!
+//! The bytes given are all that is ever read: a `mtllib` line names a file for people, its path is never opened.
 
-/// Why a mesh was refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MeshError {
-    /// Nothing to read.
-    #[error("the mesh is empty")]
-    Empty,
-    /// The store has no room.
-    #[error("the mesh store is full")]
-    StoreFull {
-        /// What the mesh would take.
-        needed_bytes: u64,
-        /// What is held.
-        used_bytes: u64,
-        /// What may be held.
-        budget_bytes: u64,
-    },
+use std::collections::BTreeMap;
+
+use glam::{DVec3, Vec3};
+
+use super::repair::{self, RawTriangle};
+use super::scan::Scan;
+use super::{Material, Mesh, MeshError, Triangle, hierarchy, mtl, scan};
+use crate::config::Limits;
+use crate::stats::Warning;
+
+/// Triangle indices share a word with [`hierarchy::LEAF`]; this leaves room for two nodes a triangle as well.
+const MAX_TRIANGLES: usize = 1 << 30;
+
+/// The id of a mesh: `blake3:` and the hash of the OBJ's bytes, as `b3sum` prints it; with an MTL, a hash in a domain of
+/// its own over both, each after its length, so that no two uploads share an id.
+pub fn id(obj: &[u8], mtl: Option<&[u8]>) -> String {
+    let hash = match mtl {
+        None => blake3::hash(obj),
+        Some(mtl) => {
+            let mut hasher = blake3::Hasher::new_derive_key("caustica mesh 2025: OBJ and MTL");
+            for bytes in [obj, mtl] {
+                hasher.update(&(bytes.len() as u64).to_le_bytes());
+                hasher.update(bytes);
+            }
+            hasher.finalize()
+        }
+    };
+    format!("blake3:{}", hash.to_hex())
+}
+
+/// Reads a mesh, in metres. Polygons become fans of triangles; degenerate and doubled triangles are left out and said in
+/// `warnings`; holes and edges with more than two faces are kept and said.
+///
+/// Faces without material, or whose material has no `Kd`, get a reflectance of 0.8.
+///
+/// # Errors
+/// See [`MeshError`]; more triangles than `limits.max_triangles` are refused before the file is read to its end.
+pub fn read(obj: &[u8], mtl: Option<&[u8]>, limits: &Limits) -> Result<Mesh, MeshError> {
+    if obj.is_empty() {
+        return Err(MeshError::Empty);
+    }
+    let mut scan = scan::scan(utf8("OBJ", obj)?, limits.max_triangles.min(MAX_TRIANGLES))?;
+    let mtl_scan = match mtl {
+        Some(bytes) => Some(mtl::scan(utf8("MTL", bytes)?)?),
+        None => None,
+    };
+    let mut warnings = std::mem::take(&mut scan.warnings);
+    material_warnings(&scan, mtl_scan.as_ref(), &mut warnings);
+
+    let mtl_text = mtl_scan.as_ref().map(|scan| scan.text.as_str());
+    let (mut models, file_materials) = load(&scan.text, mtl_text)?;
+    // The reader ends with a model without faces when the last line is a `usemtl`.
+    models.retain(|model| !model.mesh.indices.is_empty());
+    let (materials, material_of) = used_materials(&models, &file_materials, &mut warnings);
+    let raw: Vec<RawTriangle> = models
+        .iter()
+        .flat_map(|model| triangles(&model.mesh, material_of[&model.mesh.material_id]))
+        .collect();
+    drop((scan, models));
+
+    let repaired = repair::repair(&raw)?;
+    warnings.extend(repaired.warnings);
+    warnings.sort_by(|a, b| (&a.code, &a.message).cmp(&(&b.code, &b.message)));
+    let (min_m, max_m) = bounds(&repaired.triangles);
+    Ok(Mesh {
+        id: id(obj, mtl),
+        origin_m: repaired.origin_m,
+        min_m,
+        max_m,
+        hierarchy: hierarchy::build(&repaired.triangles),
+        triangles: repaired.triangles,
+        materials,
+        warnings,
+    })
+}
+
+fn utf8<'a>(file: &'static str, bytes: &'a [u8]) -> Result<&'a str, MeshError> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let offset = error.valid_up_to();
+        let line = 1 + bytes[..offset].iter().filter(|b| **b == b'\n').count();
+        MeshError::NotUtf8 { file, offset, line }
+    })
+}
+
+/// Hands the checked texts to the OBJ reader.
+fn load(
+    obj: &str,
+    mtl: Option<&str>,
+) -> Result<(Vec<tobj::Model>, Vec<tobj::Material>), MeshError> {
+    let options = tobj::LoadOptions {
+        triangulate: true,
+        ..Default::default()
+    };
+    let unreadable = |error: tobj::LoadError| MeshError::Unreadable {
+        reason: error.to_string(),
+    };
+    // Materials are known from the first line on, whatever the file called its library and wherever it named it.
+    let mut text = std::io::Read::chain("mtllib given\n".as_bytes(), obj.as_bytes());
+    let (models, materials) = tobj::load_obj_buf(&mut text, &options, |_| {
+        tobj::load_mtl_buf(&mut mtl.unwrap_or_default().as_bytes())
+    })
+    .map_err(unreadable)?;
+    Ok((models, materials.map_err(unreadable)?))
+}
+
+/// The materials that faces use, in the order of the MTL, with the default one last where it is needed; and the place of
+/// each in that list.
+fn used_materials(
+    models: &[tobj::Model],
+    file_materials: &[tobj::Material],
+    warnings: &mut Vec<Warning>,
+) -> (Vec<Material>, BTreeMap<Option<usize>, u32>) {
+    let mut place_of: BTreeMap<Option<usize>, u32> = models
+        .iter()
+        .map(|model| (model.mesh.material_id, 0))
+        .collect();
+    let default = place_of.remove(&None);
+    let mut materials = Vec::with_capacity(place_of.len() + 1);
+    for (index, place) in &mut place_of {
+        if let Some(file) = index.and_then(|i| file_materials.get(i)) {
+            *place = materials.len() as u32;
+            materials.push(mtl::material(&file.name, file.diffuse, warnings));
+        }
+    }
+    if default.is_some() {
+        place_of.insert(None, materials.len() as u32);
+        materials.push(mtl::default_material());
+    }
+    (materials, place_of)
+}
+
+/// What the names of materials in the two files say about each other.
+fn material_warnings(scan: &Scan, mtl: Option<&mtl::MtlScan>, warnings: &mut Vec<Warning>) {
+    let Some(mtl) = mtl else {
+        if let (Some(library), false) = (&scan.library, scan.used_materials.is_empty()) {
+            warnings.push(Warning::new(
+                "mesh_missing_material",
+                format!(
+                    "The OBJ names the material library `{library}`, but no MTL was sent; its faces get a reflectance \
+                     of {}.",
+                    mtl::DEFAULT_ALBEDO
+                ),
+            ));
+        } else if !scan.used_materials.is_empty() {
+            warnings.push(missing(scan.used_materials.iter(), "but no MTL was sent"));
+        }
+        return;
+    };
+    warnings.extend(mtl.warnings.iter().cloned());
+    if scan.used_materials.is_disjoint(&mtl.names) {
+        warnings.push(Warning::new(
+            "mesh_mtl_ignored",
+            format!(
+                "The MTL has no effect: none of its {} materials is named by a `usemtl` line of the OBJ.",
+                mtl.names.len()
+            ),
+        ));
+    }
+    let mut absent = scan.used_materials.difference(&mtl.names).peekable();
+    if absent.peek().is_some() {
+        warnings.push(missing(absent, "which the MTL does not have"));
+    }
+}
+
+fn missing<'a>(names: impl Iterator<Item = &'a String>, why: &str) -> Warning {
+    let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+    let shown = names[..names.len().min(5)].join(", ");
+    Warning::new(
+        "mesh_missing_material",
+        format!(
+            "The OBJ uses {} materials, {why}: {shown}{}; their faces get a reflectance of {}.",
+            names.len(),
+            if names.len() > 5 { ", …" } else { "" },
+            mtl::DEFAULT_ALBEDO
+        ),
+    )
+}
+
+/// The triangles of one model of the reader, in file coordinates.
+fn triangles(mesh: &tobj::Mesh, material: u32) -> impl Iterator<Item = RawTriangle> + '_ {
+    let pick = |values: &[_], index: u32| vector(&values[3 * index as usize..][..3]);
+    mesh.indices
+        .chunks_exact(3)
+        .zip(mesh.normal_indices.chunks_exact(3))
+        .map(move |(corners, normals)| RawTriangle {
+            positions_m: [0, 1, 2].map(|k| pick(&mesh.positions, corners[k])),
+            normals: [0, 1, 2].map(|k| pick(&mesh.normals, normals[k])),
+            material,
+        })
+}
+
+/// Three of the reader's numbers, whichever width it was built with.
+fn vector<T: Copy + Into<f64>>(values: &[T]) -> DVec3 {
+    DVec3::new(values[0].into(), values[1].into(), values[2].into())
+}
+
+fn bounds(triangles: &[Triangle]) -> (Vec3, Vec3) {
+    triangles
+        .iter()
+        .flat_map(|t| t.positions_m)
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| {
+            (min.min(p), max.max(p))
+        })
 }

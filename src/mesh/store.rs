@@ -1,120 +1,118 @@
-//! Meshes by id (minimal stand-in; the mesh branch's version wins).
+//! Meshes by id.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
-use super::{Material, Mesh, MeshError};
+use super::{Mesh, MeshError, MeshInfo, obj};
 use crate::config::Limits;
-use crate::stats::Warning;
 
-/// Meshes by content id.
-#[derive(Debug, Default)]
+/// Meshes by content id, for many threads, within a budget of bytes. Nothing is thrown out to make room: a mesh stays
+/// until it is removed, and one that does not fit is refused.
+#[derive(Debug)]
 pub struct MeshStore {
-    meshes: Mutex<BTreeMap<String, Arc<Mesh>>>,
+    limits: Limits,
+    held: RwLock<Held>,
 }
 
-/// Result of an upload.
+#[derive(Debug, Default)]
+struct Held {
+    meshes: BTreeMap<String, Arc<Mesh>>,
+    bytes: u64,
+}
+
+/// A mesh that is in the store now.
 #[derive(Clone, Debug)]
 pub struct Inserted {
     /// The mesh.
     pub mesh: Arc<Mesh>,
-    /// Whether it was not known before.
+    /// Whether it was not there before.
     pub created: bool,
 }
 
-/// What is told about a mesh.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct MeshInfo {
-    /// Id.
-    pub id: String,
-    /// Triangles.
-    pub triangles: usize,
-    /// Bounds, m.
-    pub bounds_m: BoundsM,
-    /// Materials.
-    pub materials: usize,
-    /// Host memory, bytes.
-    pub bytes: u64,
-    /// What was mended.
-    pub warnings: Vec<Warning>,
-}
-
-/// Bounds, m.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
-pub struct BoundsM {
-    /// Lower corner.
-    pub min: [f64; 3],
-    /// Upper corner.
-    pub max: [f64; 3],
-}
-
-impl Mesh {
-    /// What is told about it.
-    pub fn info(&self) -> MeshInfo {
-        MeshInfo {
-            id: self.id.clone(),
-            triangles: 1,
-            bounds_m: BoundsM {
-                min: [0.0; 3],
-                max: [1.0; 3],
-            },
-            materials: self.materials.len(),
-            bytes: 0,
-            warnings: self.warnings.clone(),
-        }
+impl Default for MeshStore {
+    fn default() -> Self {
+        Self::new(&Limits::default())
     }
 }
 
 impl MeshStore {
-    /// An empty store.
-    pub fn new(_limits: &Limits) -> Self {
-        Self::default()
-    }
-
-    /// Reads and keeps.
-    pub fn insert_obj(&self, obj: &[u8], mtl: Option<&[u8]>) -> Result<Inserted, MeshError> {
-        if !obj.windows(2).any(|w| w == b"f ") {
-            return Err(MeshError::Empty);
+    /// An empty store; `limits.mesh_store_bytes` and `limits.max_triangles` apply.
+    pub fn new(limits: &Limits) -> Self {
+        Self {
+            limits: *limits,
+            held: RwLock::default(),
         }
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(obj);
-        hasher.update(mtl.unwrap_or_default());
-        let id = format!("blake3:{}", hasher.finalize().to_hex());
-        let mut meshes = self.meshes.lock().unwrap_or_else(PoisonError::into_inner);
-        let created = !meshes.contains_key(&id);
-        let mesh = Arc::clone(meshes.entry(id.clone()).or_insert_with(|| {
-            Arc::new(Mesh {
-                id,
-                origin_m: glam::DVec3::ZERO,
-                min_m: glam::Vec3::ZERO,
-                max_m: glam::Vec3::ONE,
-                triangles: Vec::new(),
-                materials: vec![Material {
-                    name: String::new(),
-                    albedo: [0.8; 3],
-                }],
-                hierarchy: Vec::new(),
-                warnings: Vec::new(),
-            })
-        }));
-        Ok(Inserted { mesh, created })
     }
 
-    /// By id.
+    /// Reads a mesh and keeps it; the same bytes give the mesh that is there already, without reading them again.
+    ///
+    /// Takes up to seconds for the largest meshes; other calls go on meanwhile.
+    ///
+    /// # Errors
+    /// What [`obj::read`] refuses, and [`MeshError::StoreFull`].
+    pub fn insert_obj(&self, obj: &[u8], mtl: Option<&[u8]>) -> Result<Inserted, MeshError> {
+        if let Some(mesh) = self.get(&obj::id(obj, mtl)) {
+            return Ok(Inserted {
+                mesh,
+                created: false,
+            });
+        }
+        let mesh = Arc::new(obj::read(obj, mtl, &self.limits)?);
+        let needed_bytes = mesh.bytes();
+        let mut held = self.write();
+        // Another thread may have brought the same mesh in the meantime.
+        if let Some(mesh) = held.meshes.get(&mesh.id) {
+            return Ok(Inserted {
+                mesh: Arc::clone(mesh),
+                created: false,
+            });
+        }
+        if held.bytes.saturating_add(needed_bytes) > self.limits.mesh_store_bytes {
+            return Err(MeshError::StoreFull {
+                needed_bytes,
+                used_bytes: held.bytes,
+                budget_bytes: self.limits.mesh_store_bytes,
+            });
+        }
+        held.bytes += needed_bytes;
+        held.meshes.insert(mesh.id.clone(), Arc::clone(&mesh));
+        Ok(Inserted {
+            mesh,
+            created: true,
+        })
+    }
+
+    /// The mesh of an id.
     pub fn get(&self, id: &str) -> Option<Arc<Mesh>> {
-        let meshes = self.meshes.lock().unwrap_or_else(PoisonError::into_inner);
-        meshes.get(id).cloned()
+        self.read().meshes.get(id).cloned()
     }
 
-    /// Forgets.
+    /// Forgets a mesh; whether it was there. Frames that hold it keep it until they are done.
     pub fn remove(&self, id: &str) -> bool {
-        let mut meshes = self.meshes.lock().unwrap_or_else(PoisonError::into_inner);
-        meshes.remove(id).is_some()
+        let mut held = self.write();
+        let Some(mesh) = held.meshes.remove(id) else {
+            return false;
+        };
+        held.bytes -= mesh.bytes();
+        true
     }
 
-    /// All, by id.
+    /// All meshes, sorted by id.
     pub fn list(&self) -> Vec<MeshInfo> {
-        let meshes = self.meshes.lock().unwrap_or_else(PoisonError::into_inner);
-        meshes.values().map(|m| m.info()).collect()
+        self.read().meshes.values().map(|m| m.info()).collect()
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> u64 {
+        self.read().bytes
+    }
+
+    // No code that holds the lock can panic half-way through a change, so a poisoned lock guards sound data.
+    fn read(&self) -> RwLockReadGuard<'_, Held> {
+        self.held.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn write(&self) -> RwLockWriteGuard<'_, Held> {
+        self.held.write().unwrap_or_else(PoisonError::into_inner)
     }
 }

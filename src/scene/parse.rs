@@ -47,7 +47,7 @@ pub(super) fn tagged<'de, D: Deserializer<'de>, T>(
     deserializer: D,
     default_kind: Option<&str>,
     kinds: &[&str],
-    read: impl FnOnce(&str, Value) -> Result<T, String>,
+    read: impl FnOnce(&str, &Value) -> Result<T, String>,
 ) -> Result<T, D::Error> {
     let value = Value::deserialize(deserializer)?;
     let refused = |pointer: &str, detail: String, accepted: String| {
@@ -77,12 +77,12 @@ pub(super) fn tagged<'de, D: Deserializer<'de>, T>(
             ));
         }
     };
-    read(&kind, value).map_err(D::Error::custom)
+    read(&kind, &value).map_err(D::Error::custom)
 }
 
 /// Reads the object that [`tagged`] has looked into; the error is a finding as text.
-pub(super) fn inner<T: DeserializeOwned>(value: Value) -> Result<T, String> {
-    from_value(&value).map_err(|issue| carry(&issue))
+pub(super) fn inner<T: DeserializeOwned>(value: &Value) -> Result<T, String> {
+    from_value(value).map_err(|issue| carry(&issue))
 }
 
 /// Reads an integer, which may be written as 960.0 too.

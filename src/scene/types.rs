@@ -230,8 +230,8 @@ impl<'de> Deserialize<'de> for Scale {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let value = Value::deserialize(deserializer)?;
         match value {
-            Value::Number(_) => inner(value).map(Self::Uniform),
-            Value::Array(_) => inner(value).map(Self::PerAxis),
+            Value::Number(_) => inner(&value).map(Self::Uniform),
+            Value::Array(_) => inner(&value).map(Self::PerAxis),
             other => return Err(wrong_type(&other, "a number or an array of length 3")),
         }
         .map_err(serde::de::Error::custom)

@@ -29,6 +29,11 @@ pub const SCENE_HASH: HeaderName = HeaderName::from_static("x-caustica-scene-has
 
 const SERVER_TIMING: HeaderName = HeaderName::from_static("server-timing");
 
+/// The bytes of an image file.
+#[derive(Clone, Debug, ToSchema)]
+#[schema(value_type = String, format = Binary)]
+pub struct ImageFile(pub Vec<u8>);
+
 /// A render as JSON.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RenderAnswer {
@@ -51,11 +56,11 @@ pub struct InlineImage {
 /// Renders a scene.
 ///
 /// Equal scenes give equal bytes on the same adapter and version, so the image carries a strong `ETag`; with it in
-/// `If-None-Match` the answer is 304 and nothing runs. A client that leaves cancels its render.
+/// `If-None-Match` the answer is 304 and nothing runs. With `Accept: application/json` image and stats come in one. A client
+/// that leaves cancels its render.
 #[utoipa::path(
     post, path = "/v1/render", tag = "render",
     params(
-        ("accept" = Option<String>, Header, description = "`application/json` for image and stats in one; otherwise the image."),
         ("if-none-match" = Option<String>, Header, description = "`ETag` of an image at hand."),
     ),
     request_body(content = Scene, description = "The scene.", example = example_scene),
@@ -67,9 +72,12 @@ pub struct InlineImage {
                 ("server-timing", description = "ms: queue, plan, upload, gpu, readback, encode, total, and `pass-…` for each pass."),
                 ("x-caustica-scene-hash", description = "`blake3:…` of the canonical scene."),
             ),
-            content((Vec<u8> = "image/png"), (Vec<u8> = "image/x-exr"), (RenderAnswer = "application/json")),
+            content((ImageFile = "image/png"), (ImageFile = "image/x-exr"), (RenderAnswer = "application/json")),
         ),
-        (status = NOT_MODIFIED, description = "The image at hand is the one this scene gives."),
+        (
+            status = NOT_MODIFIED, description = "The image at hand is the one this scene gives.",
+            headers(("etag", description = "Of the image at hand.")),
+        ),
         RenderProblems,
     )
 )]
