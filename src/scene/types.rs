@@ -28,6 +28,7 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Mesh instances.
     #[serde(default)]
+    #[schema(value_type = Vec<MeshInstance>)]
     pub objects: Vec<Object>,
     /// Where the picture is taken from; needed by `output.kind = "view"` only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -211,6 +212,9 @@ pub struct Object {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub albedo: Option<[f64; 3]>,
 }
+
+/// The schema's derive takes the bare word `Object` for any JSON object.
+type MeshInstance = Object;
 
 fn identity_rotation() -> [f64; 4] {
     [0.0, 0.0, 0.0, 1.0]
