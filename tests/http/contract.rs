@@ -243,6 +243,10 @@ fn bad_scenes_do_not_fit_the_schema() {
     unknown_inside["lights"][0]["elevation"] = json!(3);
     let bad = [
         ("unknown field", unknown),
+        (
+            "two channels",
+            scenes::small_with("/lights/0/irradiance_w_m2", json!([1, 2])),
+        ),
         ("unknown field of a light", unknown_inside),
         ("unknown field of an object", unknown_in_object),
         (
