@@ -89,12 +89,14 @@ fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_m
             continue;
         }
         if t_leave >= t_out { return -1.0; }
-        // Step over the nearer edge, then try one level up.
+        // Step over the nearer edge; up a level only where that leaves the parent, so that a ray on an edge cannot come back
+        // to a cell it has left: every step is a whole cell forward.
         t = t_leave;
+        let parent = cell >> vec2u(1u);
         if t_x <= t_y { cell.x += i32(step_sign.x); } else { cell.y += i32(step_sign.y); }
         let count = i32(r.map_width >> level);
         if any(cell < vec2i(0)) || any(cell >= vec2i(count)) { return -1.0; }
-        if level + 1u < r.level_count {
+        if level + 1u < r.level_count && any((cell >> vec2u(1u)) != parent) {
             level += 1u;
             cell = cell >> vec2u(1u);
         }

@@ -29,7 +29,21 @@ impl Kernel {
         entry: &str,
         constants: &[(&'static str, f64)],
     ) -> Result<Self, GpuError> {
-        let module = Module::parse(path, sources.assemble(path)?)?;
+        Self::from_text(gpu, path, sources.assemble(path)?, entry, constants)
+    }
+
+    /// The same from assembled WGSL; `path` is for messages.
+    ///
+    /// # Errors
+    /// When the shader is not valid.
+    pub fn from_text(
+        gpu: &GpuContext,
+        path: &str,
+        text: String,
+        entry: &str,
+        constants: &[(&'static str, f64)],
+    ) -> Result<Self, GpuError> {
+        let module = Module::parse(path, text)?;
         let layout = BoundLayout::new(gpu, path, module.bindings(path, entry)?, wgpu::ShaderStages::COMPUTE);
         let shader = shader_module(gpu, path, &module);
         let constants: Vec<(&str, f64)> =

@@ -1,17 +1,32 @@
-//! STUB for the merge: the service's own file replaces this one.
+//! The service: HTTP in front of the GPU queue.
+//!
+//! * [`router`]: every route and layer, on one screen;
+//! * [`routes`]: one resource per file;
+//! * [`state`]: what the routes share;
+//! * [`error`]: every way to fail and its status, nowhere else; [`problem`]: how that is told and documented;
+//! * [`extract`]: request bodies; [`accept`]: which answer the client wants;
+//! * [`observe`]: arrival, deadline, request log and request metrics, around every route; [`metrics`]: the Prometheus side;
+//! * [`openapi`]: the contract, generated from the routes;
+//! * [`server`]: the listening process, from start to graceful shutdown.
+//!
+//! To add a route: a handler with `#[utoipa::path]` in a file under `routes`, a line in [`router`], its problems in
+//! [`problem`], and `BLESS=1 cargo test --test http contract` to write `openapi.yaml`.
 
-use crate::config::{Limits, RenderConfig, ServeConfig};
+pub mod accept;
+pub mod error;
+pub mod extract;
+pub mod metrics;
+pub mod observe;
+pub mod openapi;
+pub mod problem;
+pub mod router;
+pub mod routes;
+pub mod server;
+pub mod state;
 
-/// Why the service stopped.
-#[derive(Debug, thiserror::Error)]
-#[error("the service is not here yet")]
-pub struct ServeError;
-
-/// Serves until a signal.
-pub async fn serve(
-    _render: RenderConfig,
-    _limits: Limits,
-    _serve: ServeConfig,
-) -> Result<(), ServeError> {
-    Err(ServeError)
-}
+pub use error::{ApiError, ProblemKind};
+pub use openapi::openapi;
+pub use problem::Problem;
+pub use router::{app, layered};
+pub use server::{ServeError, serve, serve_on, serve_with};
+pub use state::AppState;

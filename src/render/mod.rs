@@ -25,7 +25,7 @@ use crate::stats::{
     AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats, TimeStats, Warning,
 };
 
-pub use self_check::{SelfCheck, SelfCheckItem};
+pub use self_check::{SelfCheck, SelfCheckItem, twin_error};
 
 /// Why there is no frame.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -128,6 +128,11 @@ impl Renderer {
         &self.gpu
     }
 
+    /// The shaders this renderer runs.
+    pub fn sources(&self) -> &ShaderSources {
+        &self.sources
+    }
+
     /// What would run, given what is cached now.
     ///
     /// # Errors
@@ -218,8 +223,12 @@ impl Renderer {
     }
 
     /// To be called now and then when there is nothing to do: lets the driver free what is no longer used.
-    pub fn idle(&mut self) {
+    ///
+    /// # Errors
+    /// What the device reported in the meantime, a loss above all.
+    pub fn idle(&mut self) -> Result<(), GpuError> {
         self.gpu.tidy();
+        self.gpu.check()
     }
 
     fn check_budget(&self, plan: &Plan) -> Result<(), RenderError> {

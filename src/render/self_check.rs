@@ -1,4 +1,12 @@
-//! Is the picture right on this machine?
+//! Is the picture right on this machine? Every formula and a small scene, GPU against float64.
+
+use tokio_util::sync::CancellationToken;
+
+use super::{RenderError, Renderer};
+use crate::gpu::shader::ShaderSources;
+use crate::gpu::{Binding, GpuContext, GpuError, Kernel, readback};
+use crate::physics::{attenuation, fresnel, refraction, registry};
+use crate::scene::{ResolvedScene, Scene};
 
 /// Result of comparing this machine's GPU with float64 physics.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -14,7 +22,7 @@ pub struct SelfCheck {
 pub struct SelfCheckItem {
     /// What was compared.
     pub name: String,
-    /// Largest error found.
+    /// Largest error found; of formulas as a share of the one allowed.
     pub error: f64,
     /// Largest error allowed.
     pub tolerance: f64,
@@ -22,9 +30,165 @@ pub struct SelfCheckItem {
     pub passed: bool,
 }
 
-impl super::Renderer {
+/// Samples per formula.
+const SAMPLES: usize = 512;
+/// Side of the scene's map.
+const MAP_SIDE: u32 = 32;
+/// Relative error that the flat scene may have.
+const FLAT_TOLERANCE: f64 = 1e-4;
+/// Closure that the wavy scene's energy account may have.
+const CLOSURE_TOLERANCE: f64 = 1e-5;
+
+impl Renderer {
     /// Compares this machine with float64 physics.
-    pub fn self_check(&mut self) -> Result<SelfCheck, crate::gpu::GpuError> {
-        Ok(SelfCheck::default())
+    ///
+    /// # Errors
+    /// When the GPU fails; a wrong result is not an error but a check that did not pass.
+    pub fn self_check(&mut self) -> Result<SelfCheck, GpuError> {
+        let mut checks = Vec::new();
+        for twin in registry::all() {
+            let error = twin_error(&self.gpu, &self.sources, twin, SAMPLES)?;
+            checks.push(item(format!("formula {}", twin.name), error, 1.0));
+        }
+        checks.push(item("scene: flat water, irradiance".to_owned(), self.flat_error()?, FLAT_TOLERANCE));
+        checks.push(item("scene: waves, energy account".to_owned(), self.wavy_closure()?, CLOSURE_TOLERANCE));
+        Ok(SelfCheck { passed: checks.iter().all(|c| c.passed), checks })
     }
+
+    /// Largest relative error of flat water against its closed form.
+    fn flat_error(&mut self) -> Result<f64, GpuError> {
+        let resolved = small_scene("[]");
+        let map = self.small_map(&resolved)?.0;
+        let to_light = refraction::direction_to_light(50_f64.to_radians(), 20_f64.to_radians());
+        let Some(down) = refraction::refract_direction(-to_light, glam::DVec3::Y, 1.333) else {
+            return Ok(f64::INFINITY);
+        };
+        let truth = [0.3, 0.05, 0.02].map(|c| {
+            1000.0 * to_light.y
+                * fresnel::fresnel_transmittance(to_light.y, 1.333)
+                * attenuation::transmission(c, 2.0 / -down.y)
+        });
+        let errors = map.chunks_exact(3).flat_map(|texel| {
+            texel.iter().zip(truth).map(|(&value, truth)| ((f64::from(value) - truth) / truth).abs())
+        });
+        Ok(errors.fold(0.0, f64::max))
+    }
+
+    /// Closure of the energy account under waves.
+    fn wavy_closure(&mut self) -> Result<f64, GpuError> {
+        let wave = r#"{"kind": "sine", "amplitude_m": 0.03, "wavelength_m": 0.9, "direction_deg": 20}"#;
+        let resolved = small_scene(&format!("[{wave}]"));
+        Ok(self.small_map(&resolved)?.1)
+    }
+
+    fn small_map(&mut self, resolved: &ResolvedScene) -> Result<(Vec<f32>, f64), GpuError> {
+        let mut frame = match self.render(resolved, &CancellationToken::new()) {
+            Ok(frame) => frame,
+            Err(RenderError::Gpu(error)) => return Err(error),
+            Err(other) => return Err(GpuError::Validation(format!("the self-check's scene: {other}"))),
+        };
+        let map = frame.layers.remove(&crate::scene::LayerName::Irradiance).map_or(Vec::new(), |layer| layer.data);
+        let closure = frame.stats.energy.first().map_or(f64::INFINITY, |account| account.closure);
+        Ok((map, closure))
+    }
+}
+
+fn item(name: String, error: f64, tolerance: f64) -> SelfCheckItem {
+    SelfCheckItem { name, error, tolerance, passed: error <= tolerance }
+}
+
+fn small_scene(waves: &str) -> ResolvedScene {
+    let json = format!(
+        r#"{{
+            "water": {{ "waves": {waves}, "absorption_per_m": [0.3, 0.05, 0.02] }},
+            "floor": {{ "depth_m": 2, "size_m": [8, 8] }},
+            "lights": [ {{ "kind": "sun", "elevation_deg": 50, "azimuth_deg": 20, "irradiance_w_m2": [1000, 1000, 1000] }} ],
+            "quality": {{ "water_cells": 32 }},
+            "output": {{ "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1],
+                         "width": {MAP_SIDE}, "height": {MAP_SIDE} }}
+        }}"#
+    );
+    let scene: Scene = Scene::from_json(json.as_bytes()).expect("the self-check's scene is valid");
+    ResolvedScene { scene, meshes: Vec::new() }
+}
+
+/// Largest error of a twin's f32 half over its domain, as a share of what its tolerance allows.
+///
+/// # Errors
+/// When the GPU fails or the shader does not compile.
+pub fn twin_error(
+    gpu: &GpuContext,
+    sources: &ShaderSources,
+    twin: &registry::Twin,
+    samples: usize,
+) -> Result<f64, GpuError> {
+    let inputs: Vec<([f64; 8], [f64; 4])> = registry::samples(twin, samples)
+        .into_iter()
+        .filter_map(|args| (twin.original)(&args[..twin.domain.len()]).map(|truth| (args, truth)))
+        .collect();
+    let outputs = run_twin(gpu, sources, twin, &inputs)?;
+    let mut worst: f64 = 0.0;
+    for ((_, truth), found) in inputs.iter().zip(&outputs) {
+        for (truth, found) in truth.iter().zip(found) {
+            let allowed = twin.tolerance.absolute + twin.tolerance.relative * truth.abs();
+            let error = (f64::from(*found) - truth).abs() / allowed;
+            // NaN never passes.
+            worst = if error.is_nan() { f64::INFINITY } else { worst.max(if allowed > 0.0 { error } else { 0.0 }) };
+        }
+    }
+    Ok(worst)
+}
+
+fn run_twin(
+    gpu: &GpuContext,
+    sources: &ShaderSources,
+    twin: &registry::Twin,
+    inputs: &[([f64; 8], [f64; 4])],
+) -> Result<Vec<[f32; 4]>, GpuError> {
+    let mut imports = vec!["lib/turns.wgsl", "lib/refraction.wgsl"];
+    if !imports.contains(&twin.file) {
+        imports.push(twin.file);
+    }
+    let mut text = String::new();
+    for import in imports {
+        text.push_str(&sources.assemble(import)?);
+    }
+    text.push_str(registry::CALL_PRELUDE);
+    text.push_str(&format!(
+        "@group(0) @binding(0) var<storage, read> arguments: array<array<f32, 8>>;
+         @group(0) @binding(1) var<storage, read_write> results: array<vec4f>;
+         @compute @workgroup_size(64) fn twin_main(@builtin(global_invocation_id) id: vec3u) {{
+             if id.x >= arrayLength(&arguments) {{ return; }}
+             let a = arguments[id.x];
+             results[id.x] = {};
+         }}",
+        twin.call
+    ));
+    let kernel = Kernel::from_text(gpu, twin.file, text, "twin_main", &[])?;
+    let arguments: Vec<[f32; 8]> = inputs.iter().map(|(args, _)| args.map(|a| a as f32)).collect();
+    let buffer = |label, bytes: u64| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        })
+    };
+    let source = buffer("arguments", 32 * inputs.len() as u64);
+    let target = buffer("results", 16 * inputs.len() as u64);
+    gpu.queue.write_buffer(&source, 0, bytemuck::cast_slice(&arguments));
+    let group = kernel.bind(gpu, |name| match name {
+        "arguments" => Some(Binding::Buffer(&source)),
+        "results" => Some(Binding::Buffer(&target)),
+        _ => None,
+    })?;
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(kernel.pipeline());
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(u32::try_from(inputs.len().div_ceil(64)).unwrap_or(u32::MAX), 1, 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    readback::read(gpu, &target, 16 * inputs.len() as u64)
 }

@@ -28,6 +28,7 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Mesh instances.
     #[serde(default)]
+    #[schema(value_type = Vec<MeshInstance>)]
     pub objects: Vec<Object>,
     /// Where the picture is taken from; needed by `output.kind = "view"` only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -54,9 +55,11 @@ pub struct Water {
     /// Index of refraction relative to air, 1 … 4. Default 1.333.
     pub ior: f64,
     /// Absorption coefficient a per channel, 1/m, 0 … 10⁴. Default 0.
+    #[schema(min_items = 3, max_items = 3)]
     pub absorption_per_m: [f64; 3],
     /// Scattering coefficient b per channel, 1/m, 0 … 10⁴. Default 0. Beams lose it (c = a + b);
     /// light scattered into the picture is not simulated, and a warning says how much flux that is.
+    #[schema(min_items = 3, max_items = 3)]
     pub scattering_per_m: [f64; 3],
     /// How a wave's period follows from its wavelength when `period_s` is not given. Default `finite_depth`.
     pub dispersion: Dispersion,
@@ -130,12 +133,15 @@ pub struct Floor {
     /// Distance below the water at rest, m, 0 … 11 000.
     pub depth_m: f64,
     /// Extent along x and z, m, 10⁻⁶ … 10⁶.
+    #[schema(min_items = 2, max_items = 2)]
     pub size_m: [f64; 2],
     /// Centre (x, z), m, −10⁶ … 10⁶. Default (0, 0).
     #[serde(default)]
+    #[schema(min_items = 2, max_items = 2)]
     pub center_m: [f64; 2],
     /// Diffuse reflectance per channel, 0 … 1. Default (0.7, 0.65, 0.5), pale sand.
     #[serde(default = "default_floor_albedo")]
+    #[schema(min_items = 3, max_items = 3)]
     pub albedo: [f64; 3],
 }
 
@@ -179,6 +185,7 @@ pub struct Sun {
     #[serde(default)]
     pub azimuth_deg: f64,
     /// Irradiance per channel on a plane facing the sun, W/m², 0 … 10⁹.
+    #[schema(min_items = 3, max_items = 3)]
     pub irradiance_w_m2: [f64; 3],
 }
 
@@ -189,6 +196,7 @@ pub struct Sky {
     /// Always `sky`.
     pub kind: SkyKind,
     /// Radiance per channel, W/(m² sr), 0 … 10⁹.
+    #[schema(min_items = 3, max_items = 3)]
     pub radiance_w_m2_sr: [f64; 3],
 }
 
@@ -200,17 +208,23 @@ pub struct Object {
     pub mesh: String,
     /// Translation, m, −10⁶ … 10⁶. Default (0, 0, 0).
     #[serde(default)]
+    #[schema(min_items = 3, max_items = 3)]
     pub translation_m: [f64; 3],
     /// Rotation as quaternion (x, y, z, w), of length 1 ± 10⁻³ (normalised on reading). Default: none.
     #[serde(default = "identity_rotation", deserialize_with = "rotation")]
+    #[schema(min_items = 4, max_items = 4)]
     pub rotation: [f64; 4],
     /// Scale: one number or (x, y, z), each 10⁻⁶ … 10⁶. Default 1.
     #[serde(default)]
     pub scale: Scale,
     /// Diffuse reflectance per channel, 0 … 1; absent: the mesh's materials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(min_items = 3, max_items = 3)]
     pub albedo: Option<[f64; 3]>,
 }
+
+/// The schema's derive takes the bare word `Object` for any JSON object.
+type MeshInstance = Object;
 
 fn identity_rotation() -> [f64; 4] {
     [0.0, 0.0, 0.0, 1.0]
@@ -296,11 +310,14 @@ pub struct PerspectiveCamera {
     #[serde(default)]
     pub kind: PerspectiveKind,
     /// Eye, m, −10⁶ … 10⁶.
+    #[schema(min_items = 3, max_items = 3)]
     pub position_m: [f64; 3],
     /// The point in the middle of the picture, m, −10⁶ … 10⁶; not the eye.
+    #[schema(min_items = 3, max_items = 3)]
     pub target_m: [f64; 3],
     /// Up direction, each component −10⁶ … 10⁶, any length above 0, not along the view. Default (0, 1, 0).
     #[serde(default = "default_up")]
+    #[schema(min_items = 3, max_items = 3)]
     pub up: [f64; 3],
     /// Full vertical field of view, degrees, 0.1 … 179. Default 45.
     #[serde(default = "default_fov")]
@@ -314,11 +331,14 @@ pub struct OrthographicCamera {
     /// Always `orthographic`.
     pub kind: OrthographicKind,
     /// Middle of the image plane, m, −10⁶ … 10⁶.
+    #[schema(min_items = 3, max_items = 3)]
     pub position_m: [f64; 3],
     /// The point in the middle of the picture, m, −10⁶ … 10⁶; not the position.
+    #[schema(min_items = 3, max_items = 3)]
     pub target_m: [f64; 3],
     /// Up direction, each component −10⁶ … 10⁶, any length above 0, not along the view. Default (0, 1, 0).
     #[serde(default = "default_up")]
+    #[schema(min_items = 3, max_items = 3)]
     pub up: [f64; 3],
     /// Height of the picture in the world, m, 10⁻⁶ … 10⁶.
     pub height_m: f64,
@@ -527,9 +547,11 @@ pub struct IrradianceMapOutput {
     pub receiver: Receiver,
     /// Lower corner (x, z) on the floor, m, −10⁶ … 10⁶. Floor only; default: the floor's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(min_items = 2, max_items = 2)]
     pub min_m: Option<[f64; 2]>,
     /// Upper corner (x, z) on the floor, m, −10⁶ … 10⁶, above `min_m`. Floor only; default: the floor's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(min_items = 2, max_items = 2)]
     pub max_m: Option<[f64; 2]>,
     /// Texels along x, 1 … 8192. Floor only; default 512.
     #[serde(

@@ -1,1 +1,29 @@
-//! Tests (http).
+//! The service without a GPU: a backend that does as it is told stands in for the renderer.
+//!
+//! | module | question |
+//! |---|---|
+//! | `contract` | do `openapi.yaml`, routes, schemas and examples agree? |
+//! | `errors` | does each bad request get its status and problem, and is the service whole afterwards? |
+//! | `meshes` | are meshes stored, listed, found and forgotten? |
+//! | `overload` | queue full, deadline, clients that leave |
+//! | `recovery` | device loss, panics, failed self-checks, no device |
+//! | `render` | images, JSON, entity tags, timings |
+//! | `server` | a real socket: start, drain, shutdown |
+//! | `service` | health, info, metrics, pages |
+//!
+//! `BLESS=1 cargo test --test http contract` rewrites `openapi.yaml`.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "in a test a panic is the report of a failure"
+)]
+
+mod contract;
+mod errors;
+mod meshes;
+mod overload;
+mod recovery;
+mod render;
+mod server;
+mod service;
+mod support;

@@ -1,0 +1,77 @@
+//! Which representation of a render the client wants (RFC 9110, 12.5.1).
+
+use axum::http::{HeaderMap, header};
+
+use super::error::ApiError;
+use crate::scene::ImageFormat;
+
+/// What a render is answered with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Representation {
+    /// The file as it is.
+    Image,
+    /// JSON with the file in base64 and the stats.
+    Json,
+}
+
+/// Picks the representation that the `Accept` header prefers; the image on a draw, or without the header.
+///
+/// # Errors
+/// [`ApiError::NotAcceptable`] when both are excluded.
+pub fn choose(headers: &HeaderMap, format: ImageFormat) -> Result<Representation, ApiError> {
+    let image_type = media_type(format);
+    let ranges: Vec<&str> = headers
+        .get_all(header::ACCEPT)
+        .iter()
+        .filter_map(|value| value.to_str().ok())
+        .flat_map(|value| value.split(','))
+        .map(str::trim)
+        .filter(|range| !range.is_empty())
+        .collect();
+    if ranges.is_empty() {
+        return Ok(Representation::Image);
+    }
+    let image = quality(&ranges, image_type);
+    let json = quality(&ranges, "application/json");
+    if image <= 0.0 && json <= 0.0 {
+        return Err(ApiError::NotAcceptable {
+            offered: format!("{image_type}, application/json"),
+        });
+    }
+    Ok(if json > image {
+        Representation::Json
+    } else {
+        Representation::Image
+    })
+}
+
+/// Media type of an image file.
+pub fn media_type(format: ImageFormat) -> &'static str {
+    match format {
+        ImageFormat::Png => "image/png",
+        ImageFormat::Exr => "image/x-exr",
+    }
+}
+
+/// Weight of a media type: that of the most specific range that covers it, 0 when none does.
+fn quality(ranges: &[&str], media_type: &str) -> f32 {
+    let main_type = media_type.split('/').next().unwrap_or_default();
+    ranges
+        .iter()
+        .filter_map(|range| {
+            let mut parts = range.split(';').map(str::trim);
+            let pattern = parts.next().unwrap_or_default().to_ascii_lowercase();
+            let specificity = match pattern.as_str() {
+                "*/*" => 1,
+                exact if exact == media_type => 3,
+                wild if wild.strip_suffix("/*") == Some(main_type) => 2,
+                _ => return None,
+            };
+            let weight = parts
+                .find_map(|part| part.strip_prefix("q=").or_else(|| part.strip_prefix("Q=")))
+                .map_or(1.0, |text| text.trim().parse().unwrap_or(0.0));
+            Some((specificity, weight))
+        })
+        .max_by_key(|(specificity, _)| *specificity)
+        .map_or(0.0, |(_, weight)| weight)
+}

@@ -1,0 +1,319 @@
+//! Every way to fail, and its status: the only file that knows status codes of failures.
+
+use std::any::Any;
+
+use axum::extract::multipart::{MultipartError, MultipartRejection};
+use axum::extract::rejection::BytesRejection;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::problem::Problem;
+use crate::gpu::GpuError;
+use crate::image::EncodeError;
+use crate::jobs::JobError;
+use crate::mesh::MeshError;
+use crate::render::RenderError;
+use crate::scene::{IssueKind, SceneError};
+
+/// Seconds after which a client may try again when the device or the process is in transition.
+const RECOVERY_RETRY_AFTER_S: u64 = 5;
+
+/// Who has to act on a problem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Reason {
+    /// The request has to change.
+    #[default]
+    Request,
+    /// Nobody: there is too much to do at the moment.
+    Capacity,
+    /// Nobody, or whoever runs the service: the GPU or the process is not in a state to work.
+    Device,
+    /// We: a defect of the program.
+    Defect,
+}
+
+/// Declares the kinds of problem: name = status, last part of the type, title, who has to act.
+macro_rules! problem_kinds {
+    ($($(#[$doc:meta])* $name:ident = $status:ident, $slug:literal, $title:literal, $reason:ident;)+) => {
+        /// A kind of problem; each has one type and one status.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum ProblemKind {
+            $($(#[$doc])* $name,)+
+        }
+
+        impl ProblemKind {
+            /// Every kind.
+            pub const ALL: &[Self] = &[$(Self::$name,)+];
+
+            /// HTTP status.
+            pub fn status(self) -> StatusCode {
+                match self { $(Self::$name => StatusCode::$status,)+ }
+            }
+
+            /// Stable type, `urn:caustica:problem:…`.
+            pub fn urn(self) -> &'static str {
+                match self { $(Self::$name => concat!("urn:caustica:problem:", $slug),)+ }
+            }
+
+            /// Short title, the same for every occurrence.
+            pub fn title(self) -> &'static str {
+                match self { $(Self::$name => $title,)+ }
+            }
+
+            /// Who has to act.
+            pub fn reason(self) -> Reason {
+                match self { $(Self::$name => Reason::$reason,)+ }
+            }
+        }
+    };
+}
+
+problem_kinds! {
+    /// 400: the body of a scene request is not JSON, or has a number that no 64-bit float holds.
+    MalformedJson = BAD_REQUEST, "malformed-json", "The body is not JSON that can be read", Request;
+    /// 400: the body cannot be read (broken multipart, connection trouble).
+    MalformedBody = BAD_REQUEST, "malformed-body", "The body cannot be read", Request;
+    /// 404: no such route.
+    NotFound = NOT_FOUND, "not-found", "There is nothing at this address", Request;
+    /// 404: no mesh of that id.
+    UnknownMesh = NOT_FOUND, "unknown-mesh", "There is no such mesh", Request;
+    /// 405: the route exists, the method does not; `Allow` lists those that do.
+    MethodNotAllowed = METHOD_NOT_ALLOWED, "method-not-allowed", "The method is not supported here", Request;
+    /// 406: none of the representations is acceptable.
+    NotAcceptable = NOT_ACCEPTABLE, "not-acceptable", "No acceptable representation", Request;
+    /// 413: the body is larger than `limits.max_body_bytes`.
+    BodyTooLarge = PAYLOAD_TOO_LARGE, "body-too-large", "The body is too large", Request;
+    /// 415: the body has a type that is not read here.
+    UnsupportedMediaType = UNSUPPORTED_MEDIA_TYPE, "unsupported-media-type", "The body has an unsupported type", Request;
+    /// 422: the scene is JSON but says something impossible.
+    InvalidScene = UNPROCESSABLE_ENTITY, "invalid-scene", "The scene is not valid", Request;
+    /// 422: the scene is above a limit of this installation and has no other fault.
+    LimitExceeded = UNPROCESSABLE_ENTITY, "limit-exceeded", "The scene is above a limit", Request;
+    /// 422: the scene names meshes that are not in the store and has no other fault.
+    MissingMesh = UNPROCESSABLE_ENTITY, "missing-mesh", "The scene names a mesh that is not stored", Request;
+    /// 422: the mesh cannot be used.
+    InvalidMesh = UNPROCESSABLE_ENTITY, "invalid-mesh", "The mesh is not valid", Request;
+    /// 422: the plan needs more GPU memory than is allowed.
+    OverBudget = UNPROCESSABLE_ENTITY, "over-budget", "The scene needs too much GPU memory", Request;
+    /// 429: the queue is full; `Retry-After` says when to try again.
+    QueueFull = TOO_MANY_REQUESTS, "queue-full", "Too many requests are waiting", Capacity;
+    /// 500: a defect of the program.
+    Internal = INTERNAL_SERVER_ERROR, "internal", "Internal error", Defect;
+    /// 503: no result before the deadline.
+    DeadlinePassed = SERVICE_UNAVAILABLE, "deadline-passed", "No result before the deadline", Capacity;
+    /// 503: there is no working GPU device.
+    NotReady = SERVICE_UNAVAILABLE, "not-ready", "The service is not ready", Device;
+    /// 503: the GPU device was lost twice, or hung, during this request.
+    DeviceLost = SERVICE_UNAVAILABLE, "device-lost", "The GPU device was lost", Device;
+    /// 503: the GPU has no memory left although the plan was within its budget.
+    OutOfGpuMemory = SERVICE_UNAVAILABLE, "out-of-gpu-memory", "The GPU is out of memory", Device;
+    /// 503: the process is ending.
+    ShuttingDown = SERVICE_UNAVAILABLE, "shutting-down", "The service is shutting down", Device;
+    /// 507: the mesh store has no room.
+    MeshStoreFull = INSUFFICIENT_STORAGE, "mesh-store-full", "The mesh store is full", Capacity;
+}
+
+impl ProblemKind {
+    /// Whether the same request may succeed later.
+    pub fn retryable(self) -> bool {
+        matches!(self.reason(), Reason::Capacity | Reason::Device)
+    }
+
+    /// Whether `Retry-After` says when: not for a mesh store, which somebody has to clear.
+    pub fn sends_retry_after(self) -> bool {
+        self.retryable() && self != Self::MeshStoreFull
+    }
+}
+
+/// Why a request has no good answer.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum ApiError {
+    /// The body cannot be read.
+    #[error("the body cannot be read: {0}")]
+    MalformedBody(String),
+    /// No such route.
+    #[error("there is nothing at {path}; GET /openapi.yaml lists what there is")]
+    NotFound {
+        /// Path asked for.
+        path: String,
+    },
+    /// No mesh of that id.
+    #[error("there is no mesh {id}; GET /v1/meshes lists those that are stored")]
+    UnknownMesh {
+        /// Id asked for.
+        id: String,
+    },
+    /// The route exists, the method does not.
+    #[error("{method} is not supported at {path}; the Allow header lists what is")]
+    MethodNotAllowed {
+        /// Method used.
+        method: String,
+        /// Path asked for.
+        path: String,
+    },
+    /// None of the representations is acceptable.
+    #[error("the Accept header excludes what there is: {offered}")]
+    NotAcceptable {
+        /// Media types that could be sent.
+        offered: String,
+    },
+    /// The body is too large.
+    #[error("the body has more than {limit_bytes} bytes, the most that is read")]
+    BodyTooLarge {
+        /// The limit, bytes.
+        limit_bytes: usize,
+    },
+    /// The body has a type that is not read here.
+    #[error("Content-Type is {found}; accepted: {accepted}")]
+    UnsupportedMediaType {
+        /// What the request said, or `missing`.
+        found: String,
+        /// What is read here.
+        accepted: &'static str,
+    },
+    /// The scene is refused.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The mesh is refused.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The GPU queue has no answer.
+    #[error(transparent)]
+    Job(#[from] JobError),
+    /// The service does not take work now.
+    #[error("not ready: {}", reasons.join("; "))]
+    NotReady {
+        /// One sentence each.
+        reasons: Vec<String>,
+    },
+    /// The frame cannot be written as a file: a defect.
+    #[error("encoding failed: {0}")]
+    Encode(#[from] EncodeError),
+    /// A handler panicked: a defect.
+    #[error("a handler panicked: {0}")]
+    Panic(String),
+}
+
+impl ApiError {
+    /// Its kind, which decides type and status.
+    pub fn kind(&self) -> ProblemKind {
+        match self {
+            Self::MalformedBody(_) => ProblemKind::MalformedBody,
+            Self::NotFound { .. } => ProblemKind::NotFound,
+            Self::UnknownMesh { .. } => ProblemKind::UnknownMesh,
+            Self::MethodNotAllowed { .. } => ProblemKind::MethodNotAllowed,
+            Self::NotAcceptable { .. } => ProblemKind::NotAcceptable,
+            Self::BodyTooLarge { .. } => ProblemKind::BodyTooLarge,
+            Self::UnsupportedMediaType { .. } => ProblemKind::UnsupportedMediaType,
+            Self::Scene(error) => scene_kind(error),
+            Self::Mesh(MeshError::StoreFull { .. }) => ProblemKind::MeshStoreFull,
+            Self::Mesh(_) => ProblemKind::InvalidMesh,
+            Self::Job(error) => job_kind(error),
+            Self::NotReady { .. } => ProblemKind::NotReady,
+            Self::Encode(_) | Self::Panic(_) => ProblemKind::Internal,
+        }
+    }
+
+    /// Seconds after which the same request may succeed, where that is known.
+    pub fn retry_after_s(&self) -> Option<u64> {
+        match self {
+            Self::Job(JobError::QueueFull { retry_after_s, .. }) => Some(*retry_after_s),
+            _ => self
+                .kind()
+                .sends_retry_after()
+                .then_some(RECOVERY_RETRY_AFTER_S),
+        }
+    }
+
+    /// From a body that was not read in full; `limit_bytes` is the limit it was read under.
+    pub(super) fn from_bytes_rejection(rejection: &BytesRejection, limit_bytes: usize) -> Self {
+        Self::from_body_status(rejection.status(), rejection.body_text(), limit_bytes)
+    }
+
+    /// From a multipart body that broke off or broke a rule.
+    pub(super) fn from_multipart(error: &MultipartError, limit_bytes: usize) -> Self {
+        Self::from_body_status(error.status(), error.body_text(), limit_bytes)
+    }
+
+    /// From a request that says multipart and is not.
+    pub(super) fn from_multipart_rejection(rejection: &MultipartRejection) -> Self {
+        Self::MalformedBody(rejection.body_text())
+    }
+
+    /// From the catcher of panics.
+    pub(super) fn from_panic(panic: &(dyn Any + Send)) -> Self {
+        let message = panic
+            .downcast_ref::<&str>()
+            .map(|text| (*text).to_owned())
+            .or_else(|| panic.downcast_ref::<String>().cloned());
+        Self::Panic(message.unwrap_or_else(|| "no message".to_owned()))
+    }
+
+    fn from_body_status(status: StatusCode, text: String, limit_bytes: usize) -> Self {
+        if status == StatusCode::PAYLOAD_TOO_LARGE {
+            Self::BodyTooLarge { limit_bytes }
+        } else {
+            Self::MalformedBody(text)
+        }
+    }
+}
+
+impl From<RenderError> for ApiError {
+    fn from(error: RenderError) -> Self {
+        Self::Job(JobError::Render(error))
+    }
+}
+
+fn scene_kind(error: &SceneError) -> ProblemKind {
+    match error.kind() {
+        IssueKind::Syntax => ProblemKind::MalformedJson,
+        IssueKind::Invalid => ProblemKind::InvalidScene,
+        IssueKind::LimitExceeded => ProblemKind::LimitExceeded,
+        IssueKind::UnknownMesh => ProblemKind::MissingMesh,
+    }
+}
+
+fn job_kind(error: &JobError) -> ProblemKind {
+    match error {
+        JobError::QueueFull { .. } => ProblemKind::QueueFull,
+        JobError::DeadlinePassed { .. } => ProblemKind::DeadlinePassed,
+        JobError::Cancelled => ProblemKind::ShuttingDown,
+        JobError::Unavailable(_) => ProblemKind::NotReady,
+        JobError::Panicked(_) => ProblemKind::Internal,
+        JobError::Render(error) => match error {
+            RenderError::Scene(error) => scene_kind(error),
+            RenderError::OverBudget { .. } => ProblemKind::OverBudget,
+            RenderError::NotFinite { .. } => ProblemKind::Internal,
+            RenderError::Cancelled => ProblemKind::ShuttingDown,
+            RenderError::Gpu(error) => match error {
+                GpuError::NoAdapter(_) => ProblemKind::NotReady,
+                GpuError::DeviceLost(_) | GpuError::Timeout(_) => ProblemKind::DeviceLost,
+                GpuError::OutOfMemory(_) => ProblemKind::OutOfGpuMemory,
+                GpuError::Validation(_) | GpuError::Shader { .. } => ProblemKind::Internal,
+            },
+        },
+    }
+}
+
+/// The problem as `application/problem+json`. Nothing is logged here: the error travels in the response's extensions to
+/// [`super::observe`].
+impl IntoResponse for ApiError {
+    fn into_response(self) -> Response {
+        let body = serde_json::to_vec(&Problem::of(&self)).expect("a problem always serialises");
+        let mut response = (self.kind().status(), body).into_response();
+        response.headers_mut().insert(
+            header::CONTENT_TYPE,
+            HeaderValue::from_static(super::problem::MEDIA_TYPE),
+        );
+        if let Some(seconds) = self.retry_after_s() {
+            response
+                .headers_mut()
+                .insert(header::RETRY_AFTER, HeaderValue::from(seconds));
+        }
+        response.extensions_mut().insert(self);
+        response
+    }
+}

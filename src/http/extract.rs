@@ -1,0 +1,76 @@
+//! Request bodies.
+
+use axum::body::Bytes;
+use axum::extract::{FromRequest, Request};
+use axum::http::{HeaderMap, header};
+
+use super::error::ApiError;
+use super::state::AppState;
+use crate::scene::{ResolvedScene, Scene, resolve};
+
+/// Media types that a scene is read from.
+const SCENE_TYPES: &str = "application/json";
+
+/// A scene in the body: read, validated, with its meshes.
+#[derive(Clone, Debug)]
+pub struct SceneBody(pub ResolvedScene);
+
+impl FromRequest<AppState> for SceneBody {
+    type Rejection = ApiError;
+
+    async fn from_request(request: Request, state: &AppState) -> Result<Self, ApiError> {
+        let media_type = media_type(request.headers());
+        if !media_type
+            .as_deref()
+            .is_some_and(|found| found == SCENE_TYPES || found.ends_with("+json"))
+        {
+            return Err(unsupported(media_type, SCENE_TYPES));
+        }
+        let body = bytes(request, state).await?;
+        let state = state.clone();
+        // A scene may hold as many bytes as the body limit lets through: reading it is work for another thread.
+        run_blocking(move || {
+            let scene = Scene::from_json(&body)?;
+            let resolved = resolve(scene, state.limits(), |id| state.meshes().get(id))?;
+            Ok(Self(resolved))
+        })
+        .await
+    }
+}
+
+/// The whole body, up to `limits.max_body_bytes`.
+pub(super) async fn bytes(request: Request, state: &AppState) -> Result<Bytes, ApiError> {
+    Bytes::from_request(request, state)
+        .await
+        .map_err(|rejection| {
+            ApiError::from_bytes_rejection(&rejection, state.limits().max_body_bytes)
+        })
+}
+
+/// `Content-Type` in lower case, without parameters.
+pub(super) fn media_type(headers: &HeaderMap) -> Option<String> {
+    let value = headers.get(header::CONTENT_TYPE)?.to_str().ok()?;
+    let essence = value.split(';').next().unwrap_or_default();
+    Some(essence.trim().to_ascii_lowercase())
+}
+
+/// The error of a wrong or missing `Content-Type`.
+pub(super) fn unsupported(found: Option<String>, accepted: &'static str) -> ApiError {
+    ApiError::UnsupportedMediaType {
+        found: found.unwrap_or_else(|| "missing".to_owned()),
+        accepted,
+    }
+}
+
+/// Runs work that would hold up other requests on a thread of its own; a panic there becomes an error.
+pub(super) async fn run_blocking<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, ApiError> + Send + 'static,
+) -> Result<T, ApiError> {
+    match tokio::task::spawn_blocking(work).await {
+        Ok(result) => result,
+        Err(error) => Err(match error.try_into_panic() {
+            Ok(panic) => ApiError::from_panic(&*panic),
+            Err(_) => crate::jobs::JobError::Cancelled.into(),
+        }),
+    }
+}

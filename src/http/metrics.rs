@@ -1,0 +1,145 @@
+//! Counters, gauges and histograms for Prometheus.
+
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::Duration;
+
+use metrics::{
+    Unit, counter, describe_counter, describe_gauge, describe_histogram, gauge, histogram,
+};
+use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
+
+use super::state::AppState;
+
+/// Upper bounds of the render time histogram, s.
+const RENDER_BUCKETS_S: [f64; 14] = [
+    0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0, 120.0,
+];
+
+const REQUESTS: &str = "caustica_http_requests_total";
+const PROBLEMS: &str = "caustica_http_problems_total";
+const RENDER_SECONDS: &str = "caustica_render_seconds";
+
+/// The recorder of the process: installed once, since the `metrics` facade knows only one.
+static RECORDER: OnceLock<PrometheusHandle> = OnceLock::new();
+
+/// Gauges are set and read together, so that one scrape never shows the state of two.
+static SCRAPE: Mutex<()> = Mutex::new(());
+
+/// The service's side of the process-wide recorder.
+#[derive(Clone, Copy, Debug)]
+pub struct Metrics {
+    _installed: (),
+}
+
+impl Metrics {
+    /// Installs the recorder if that has not happened yet.
+    pub(super) fn new() -> Self {
+        handle();
+        Self { _installed: () }
+    }
+
+    /// Counts an answered request. `status` is 499 when the client had left.
+    pub(super) fn request(self, method: &str, route: &str, status: u16) {
+        counter!(
+            REQUESTS,
+            "method" => method.to_owned(),
+            "route" => route.to_owned(),
+            "status" => status.to_string(),
+        )
+        .increment(1);
+    }
+
+    /// Counts a problem by its type.
+    pub(super) fn problem(self, urn: &'static str) {
+        counter!(PROBLEMS, "type" => urn).increment(1);
+    }
+
+    /// Records a finished render, from arrival to the encoded file.
+    pub(super) fn rendered(self, took: Duration) {
+        histogram!(RENDER_SECONDS).record(took);
+    }
+
+    /// Moves recorded samples into their buckets; to be called now and then when nobody scrapes.
+    pub(super) fn upkeep(self) {
+        handle().run_upkeep();
+    }
+
+    /// Everything, in the Prometheus text format.
+    pub(super) fn render(self, state: &AppState) -> String {
+        let _scrape = SCRAPE.lock().unwrap_or_else(PoisonError::into_inner);
+        let status = state.queue().status();
+        let settings = state.queue().settings();
+        let cache = &status.level_maps;
+        counter!("caustica_level_map_cache_hits_total").absolute(cache.hits);
+        counter!("caustica_level_map_cache_misses_total").absolute(cache.misses);
+        counter!("caustica_level_map_cache_evictions_total").absolute(cache.evictions);
+        counter!("caustica_device_losses_total").absolute(status.losses);
+        gauge!("caustica_level_map_cache_bytes").set(cache.bytes as f64);
+        gauge!("caustica_level_map_cache_entries").set(cache.entries as f64);
+        gauge!("caustica_queue_depth").set(state.queue().depth() as f64);
+        gauge!("caustica_queue_capacity").set((settings.waiting + 1) as f64);
+        gauge!("caustica_ready").set(f64::from(u8::from(state.obstacles().is_empty())));
+        if let Some(adapter) = status.adapter {
+            gauge!(
+                "caustica_adapter_info",
+                "name" => adapter.name,
+                "backend" => adapter.backend,
+                "driver" => adapter.driver,
+                "software" => adapter.software.to_string(),
+            )
+            .set(1.0);
+        }
+        handle().render()
+    }
+}
+
+fn handle() -> &'static PrometheusHandle {
+    RECORDER.get_or_init(|| {
+        let recorder = PrometheusBuilder::new()
+            .set_buckets_for_metric(Matcher::Full(RENDER_SECONDS.to_owned()), &RENDER_BUCKETS_S)
+            .expect("the list of buckets is not empty")
+            .build_recorder();
+        let handle = recorder.handle();
+        if metrics::set_global_recorder(recorder).is_err() {
+            tracing::warn!("another metrics recorder is installed; /metrics will be empty");
+        }
+        describe();
+        handle
+    })
+}
+
+fn describe() {
+    describe_counter!(
+        REQUESTS,
+        "Requests by method, route and status; 499: the client left."
+    );
+    describe_counter!(
+        PROBLEMS,
+        "Answers of type application/problem+json, by type."
+    );
+    describe_histogram!(
+        RENDER_SECONDS,
+        Unit::Seconds,
+        "Renders, from arrival to the encoded file."
+    );
+    describe_counter!("caustica_level_map_cache_hits_total", "Level maps found.");
+    describe_counter!("caustica_level_map_cache_misses_total", "Level maps built.");
+    describe_counter!(
+        "caustica_level_map_cache_evictions_total",
+        "Level maps thrown out to make room."
+    );
+    describe_counter!(
+        "caustica_device_losses_total",
+        "GPU devices lost or given up."
+    );
+    describe_gauge!(
+        "caustica_level_map_cache_bytes",
+        Unit::Bytes,
+        "Level maps held."
+    );
+    describe_gauge!("caustica_level_map_cache_entries", "Level maps held.");
+    describe_gauge!("caustica_queue_depth", "Jobs that wait or run.");
+    describe_gauge!("caustica_queue_capacity", "Jobs that may wait or run.");
+    describe_gauge!("caustica_ready", "1 when /readyz is 200.");
+    describe_gauge!("caustica_adapter_info", "The adapter in use; always 1.");
+}

@@ -1,0 +1,49 @@
+//! The contract, generated from the routes.
+
+use std::sync::OnceLock;
+
+use utoipa::OpenApi;
+
+use super::problem::Problem;
+use super::router;
+use crate::scene::Scene;
+
+/// What the contract says besides the routes.
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "Caustica",
+        description = "Renders water caustics: a scene in, a picture and what it cost out.\n\n\
+            Right-handed, Y up, metres, seconds, SI radiometry; angles in degrees; linear RGB. Unknown fields are errors. \
+            Every failure is `application/problem+json` with a stable `type`; every answer carries `x-request-id`. \
+            Any route may also answer 404, 405 and 503 (`urn:caustica:problem:deadline-passed`).",
+        license(name = "MIT or Apache 2.0", identifier = "MIT OR Apache-2.0")
+    ),
+    tags(
+        (name = "render", description = "Scenes to pictures."),
+        (name = "meshes", description = "Meshes that scenes refer to."),
+        (name = "service", description = "Health, metrics, limits, contract.")
+    ),
+    components(schemas(Problem, Scene))
+)]
+struct Document;
+
+/// The contract without its routes.
+pub(super) fn document() -> utoipa::openapi::OpenApi {
+    Document::openapi()
+}
+
+/// The contract.
+pub fn openapi() -> utoipa::openapi::OpenApi {
+    router::api().into_openapi()
+}
+
+/// The contract as YAML, as it stands in `openapi.yaml`.
+pub fn yaml() -> &'static str {
+    static YAML: OnceLock<String> = OnceLock::new();
+    YAML.get_or_init(|| {
+        openapi()
+            .to_yaml()
+            .expect("a generated contract always serialises")
+    })
+}

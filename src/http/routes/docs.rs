@@ -1,0 +1,48 @@
+//! `/`, `/openapi.yaml` and `/docs`: nothing here needs any other host.
+
+use axum::Router;
+use axum::http::header;
+use axum::response::{Html, IntoResponse};
+use utoipa_swagger_ui::{Config, SwaggerUi};
+
+use super::super::openapi::yaml;
+use super::super::problem::CommonProblems;
+use super::super::state::AppState;
+
+/// The page; its script gets the example scene from the contract's own source.
+const PAGE: &str = include_str!("try_it.html");
+
+/// Where [`PAGE`] wants the example scene.
+const EXAMPLE_MARK: &str = "{{example_scene}}";
+
+/// What the page may load: itself, and pictures that it made.
+const PAGE_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src 'self'; \
+                           img-src blob: data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// A page to try the service.
+#[utoipa::path(
+    get, path = "/", tag = "service",
+    responses((status = OK, description = "HTML.", body = String, content_type = "text/html"), CommonProblems)
+)]
+pub async fn page() -> impl IntoResponse {
+    let example = format!("{:#}", super::render::example_scene());
+    // The scene holds no `<`, `&` or quotes that would end the text area.
+    let html = PAGE.replace(EXAMPLE_MARK, &example);
+    ([(header::CONTENT_SECURITY_POLICY, PAGE_POLICY)], Html(html))
+}
+
+/// The contract: this document.
+#[utoipa::path(
+    get, path = "/openapi.yaml", tag = "service",
+    responses((status = OK, description = "OpenAPI.", body = String, content_type = "application/yaml"), CommonProblems)
+)]
+pub async fn contract() -> impl IntoResponse {
+    ([(header::CONTENT_TYPE, "application/yaml")], yaml())
+}
+
+/// A reader for the contract, from files inside the program.
+pub(in super::super) fn swagger() -> Router<AppState> {
+    SwaggerUi::new("/docs")
+        .config(Config::from("/openapi.yaml").validator_url("none"))
+        .into()
+}

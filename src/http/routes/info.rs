@@ -1,0 +1,88 @@
+//! `/v1/info`: version, adapter, limits, features.
+
+use std::collections::BTreeMap;
+
+use axum::Json;
+use axum::extract::State;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::super::problem::CommonProblems;
+use super::super::state::AppState;
+use crate::config::Limits;
+use crate::scene::{Dispersion, ExrPixel, ImageFormat, LayerName, Method, Placement, ToneCurve};
+use crate::stats::AdapterStats;
+
+/// What runs here and what it takes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Info {
+    /// Program version.
+    pub version: String,
+    /// Where it runs; absent until an adapter is open.
+    pub adapter: Option<AdapterStats>,
+    /// Whether a CPU does the work; absent until an adapter is open.
+    pub software: Option<bool>,
+    /// Most that a request may ask for.
+    pub limits: Limits,
+    /// GPU memory that one frame may hold, bytes.
+    pub memory_budget_bytes: u64,
+    /// GPU memory for cached level maps, bytes.
+    pub level_map_budget_bytes: u64,
+    /// Requests that may wait for the GPU.
+    pub queue: usize,
+    /// Time from arrival after which a request is answered 503, s.
+    pub deadline_s: f64,
+    /// Words that the fields of a scene accept, by the name of their schema in `/openapi.yaml`.
+    pub features: BTreeMap<String, Vec<String>>,
+}
+
+/// Tells what runs here and what it takes.
+#[utoipa::path(
+    get, path = "/v1/info", tag = "service",
+    responses((status = OK, description = "Version, adapter, limits, features.", body = Info), CommonProblems)
+)]
+pub async fn info(State(state): State<AppState>) -> Json<Info> {
+    let adapter = state.queue().status().adapter;
+    let settings = state.queue().settings();
+    let config = state.render_config();
+    Json(Info {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        software: adapter.as_ref().map(|adapter| adapter.software),
+        adapter,
+        limits: *state.limits(),
+        memory_budget_bytes: bytes_of_mib(config.memory_budget_mib),
+        level_map_budget_bytes: bytes_of_mib(config.level_map_budget_mib),
+        queue: settings.waiting,
+        deadline_s: settings.deadline.as_secs_f64(),
+        features: features(),
+    })
+}
+
+fn bytes_of_mib(mib: u64) -> u64 {
+    mib.saturating_mul(1 << 20)
+}
+
+/// The words of the scene's enumerations, taken from their schemas so that they cannot fall behind.
+fn features() -> BTreeMap<String, Vec<String>> {
+    [
+        words::<Dispersion>(),
+        words::<ExrPixel>(),
+        words::<ImageFormat>(),
+        words::<LayerName>(),
+        words::<Method>(),
+        words::<Placement>(),
+        words::<ToneCurve>(),
+    ]
+    .into()
+}
+
+fn words<T: ToSchema>() -> (String, Vec<String>) {
+    let schema = serde_json::to_value(T::schema()).unwrap_or_default();
+    let words = schema["enum"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|word| word.as_str().map(str::to_owned))
+        .collect();
+    (T::name().into_owned(), words)
+}

@@ -1,0 +1,181 @@
+//! `/v1/meshes`: upload, list, inspect, forget.
+
+use axum::Json;
+use axum::body::Bytes;
+use axum::extract::{FromRequest, Multipart, Path, Request, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::super::error::ApiError;
+use super::super::extract::{bytes, media_type, run_blocking, unsupported};
+use super::super::problem::{CommonProblems, MeshProblems, UploadProblems};
+use super::super::state::AppState;
+use crate::mesh::MeshInfo;
+
+/// Media types that a mesh is read from.
+const MESH_TYPES: &str = "text/plain, model/obj or application/octet-stream with an OBJ, or multipart/form-data with the \
+                          parts `obj` and, if there are materials, `mtl`";
+
+/// Smallest OBJ worth showing.
+const EXAMPLE_OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n";
+
+/// All stored meshes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MeshList {
+    /// By id.
+    pub meshes: Vec<MeshInfo>,
+}
+
+/// An upload with materials.
+#[derive(ToSchema)]
+#[expect(
+    dead_code,
+    reason = "the shape of a form, for the contract; parts are read one by one"
+)]
+pub struct MeshForm {
+    /// The Wavefront OBJ, in metres.
+    #[schema(content_media_type = "model/obj")]
+    obj: String,
+    /// The MTL that it names; only `Kd` is used.
+    #[schema(content_media_type = "model/mtl")]
+    mtl: Option<String>,
+}
+
+/// Lists the stored meshes.
+#[utoipa::path(
+    get, path = "/v1/meshes", tag = "meshes",
+    responses((status = OK, description = "By id.", body = MeshList), CommonProblems)
+)]
+pub async fn list(State(state): State<AppState>) -> Json<MeshList> {
+    Json(MeshList {
+        meshes: state.meshes().list(),
+    })
+}
+
+/// Stores a mesh.
+///
+/// The id is a hash of the uploaded bytes: the same bytes get the same id, here and everywhere. Meshes live until they are
+/// deleted or the process ends.
+#[utoipa::path(
+    post, path = "/v1/meshes", tag = "meshes",
+    request_body(
+        description = "A Wavefront OBJ in metres, alone or with its MTL.",
+        content(
+            (String = "text/plain", example = json!(EXAMPLE_OBJ)),
+            (String = "model/obj", example = json!(EXAMPLE_OBJ)),
+            (String = "application/octet-stream", example = json!(EXAMPLE_OBJ)),
+            (MeshForm = "multipart/form-data", example = json!({
+                "obj": EXAMPLE_OBJ, "mtl": "newmtl sand\nKd 0.7 0.65 0.5\n"
+            })),
+        )
+    ),
+    responses(
+        (status = CREATED, description = "Stored.", body = MeshInfo, headers(("location", description = "Its address."))),
+        (status = OK, description = "Known already.", body = MeshInfo, headers(("location", description = "Its address."))),
+        UploadProblems,
+    )
+)]
+pub async fn upload(
+    State(state): State<AppState>,
+    request: Request,
+) -> Result<(StatusCode, HeaderMap, Json<MeshInfo>), ApiError> {
+    let media_type = media_type(request.headers());
+    let files = match media_type.as_deref() {
+        Some("text/plain" | "model/obj" | "application/octet-stream") => MeshFiles {
+            obj: bytes(request, &state).await?,
+            mtl: None,
+        },
+        Some("multipart/form-data") => read_form(request, &state).await?,
+        _ => return Err(unsupported(media_type, MESH_TYPES)),
+    };
+    let (info, created) = run_blocking(move || {
+        let inserted = state
+            .meshes()
+            .insert_obj(&files.obj, files.mtl.as_deref())?;
+        Ok((inserted.mesh.info(), inserted.created))
+    })
+    .await?;
+    let status = if created {
+        StatusCode::CREATED
+    } else {
+        StatusCode::OK
+    };
+    let mut headers = HeaderMap::new();
+    if let Ok(location) = format!("/v1/meshes/{}", info.id).parse() {
+        headers.insert(header::LOCATION, location);
+    }
+    Ok((status, headers, Json(info)))
+}
+
+/// Tells about one mesh.
+#[utoipa::path(
+    get, path = "/v1/meshes/{id}", tag = "meshes",
+    params(("id" = String, Path, description = "`blake3:…`, from the upload.")),
+    responses((status = OK, description = "Without its triangles.", body = MeshInfo), MeshProblems)
+)]
+pub async fn inspect(
+    State(state): State<AppState>,
+    Path(id): Path<String>,
+) -> Result<Json<MeshInfo>, ApiError> {
+    match state.meshes().get(&id) {
+        Some(mesh) => Ok(Json(mesh.info())),
+        None => Err(ApiError::UnknownMesh { id }),
+    }
+}
+
+/// Forgets a mesh, and what is cached for it.
+///
+/// Renders that have started keep it until they end.
+#[utoipa::path(
+    delete, path = "/v1/meshes/{id}", tag = "meshes",
+    params(("id" = String, Path, description = "`blake3:…`, from the upload.")),
+    responses((status = NO_CONTENT, description = "Forgotten."), MeshProblems)
+)]
+pub async fn forget(
+    State(state): State<AppState>,
+    Path(id): Path<String>,
+) -> Result<StatusCode, ApiError> {
+    if !state.meshes().remove(&id) {
+        return Err(ApiError::UnknownMesh { id });
+    }
+    state.queue().forget_mesh(&id);
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// The files of an upload.
+struct MeshFiles {
+    obj: Bytes,
+    mtl: Option<Bytes>,
+}
+
+async fn read_form(request: Request, state: &AppState) -> Result<MeshFiles, ApiError> {
+    let limit = state.limits().max_body_bytes;
+    let broken = |error| ApiError::from_multipart(&error, limit);
+    let mut form = Multipart::from_request(request, state)
+        .await
+        .map_err(|rejection| ApiError::from_multipart_rejection(&rejection))?;
+    let (mut obj, mut mtl) = (None, None);
+    while let Some(part) = form.next_field().await.map_err(broken)? {
+        let name = part.name().unwrap_or_default().to_owned();
+        let target = match name.as_str() {
+            "obj" => &mut obj,
+            "mtl" => &mut mtl,
+            _ => {
+                return Err(ApiError::MalformedBody(format!(
+                    "the form has a part `{name}`; accepted are `obj` and `mtl`"
+                )));
+            }
+        };
+        let twice = target.replace(part.bytes().await.map_err(broken)?);
+        if twice.is_some() {
+            return Err(ApiError::MalformedBody(format!(
+                "the form has the part `{name}` twice; once is accepted"
+            )));
+        }
+    }
+    let obj = obj.ok_or_else(|| {
+        ApiError::MalformedBody("the form has no part `obj`; it is needed".to_owned())
+    })?;
+    Ok(MeshFiles { obj, mtl })
+}

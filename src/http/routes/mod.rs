@@ -1,0 +1,9 @@
+//! The routes, one resource per file.
+
+pub mod docs;
+pub mod health;
+pub mod info;
+pub mod meshes;
+pub mod metrics;
+pub mod plan;
+pub mod render;

@@ -1,0 +1,29 @@
+//! `POST /v1/plan`: what a scene would run, and why; nothing runs.
+
+use axum::extract::State;
+use axum::{Extension, Json};
+
+use super::super::error::ApiError;
+use super::super::extract::SceneBody;
+use super::super::observe::Arrival;
+use super::super::problem::PlanProblems;
+use super::super::state::AppState;
+use super::render::example_scene;
+use crate::plan::Plan;
+use crate::scene::Scene;
+
+/// Plans a scene.
+///
+/// The plan knows what is cached now, so a plan after a render may be shorter.
+#[utoipa::path(
+    post, path = "/v1/plan", tag = "render",
+    request_body(content = Scene, description = "The scene.", example = example_scene),
+    responses((status = OK, description = "Passes, reasons, bytes.", body = Plan), PlanProblems)
+)]
+pub async fn plan(
+    State(state): State<AppState>,
+    Extension(Arrival(arrival)): Extension<Arrival>,
+    SceneBody(resolved): SceneBody,
+) -> Result<Json<Plan>, ApiError> {
+    Ok(Json(state.queue().plan(resolved, arrival).await?))
+}

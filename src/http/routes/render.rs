@@ -1,0 +1,231 @@
+//! `POST /v1/render`: a scene in, a picture out.
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderName, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use axum::{Extension, Json};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use utoipa::ToSchema;
+
+use super::super::accept::{Representation, choose};
+use super::super::error::ApiError;
+use super::super::extract::{SceneBody, run_blocking};
+use super::super::observe::Arrival;
+use super::super::problem::RenderProblems;
+use super::super::state::AppState;
+use crate::frame::Frame;
+use crate::image::{Encoded, Metadata, encode};
+use crate::scene::{Encoding, Scene};
+use crate::stats::{AdapterStats, Stats};
+
+/// Header with the hash of the canonical scene.
+pub const SCENE_HASH: HeaderName = HeaderName::from_static("x-caustica-scene-hash");
+
+const SERVER_TIMING: HeaderName = HeaderName::from_static("server-timing");
+
+/// The bytes of an image file.
+#[derive(Clone, Debug, ToSchema)]
+#[schema(value_type = String, format = Binary)]
+pub struct ImageFile(pub Vec<u8>);
+
+/// A render as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RenderAnswer {
+    /// The file.
+    pub image: InlineImage,
+    /// What it cost and how far to trust it.
+    pub stats: Stats,
+}
+
+/// A file inside JSON.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct InlineImage {
+    /// `image/png` or `image/x-exr`.
+    pub media_type: String,
+    /// The bytes.
+    #[schema(content_encoding = "base64")]
+    pub base64: String,
+}
+
+/// Renders a scene.
+///
+/// Equal scenes give equal bytes on the same adapter and version, so the image carries a strong `ETag`; with it in
+/// `If-None-Match` the answer is 304 and nothing runs. With `Accept: application/json` image and stats come in one. A client
+/// that leaves cancels its render.
+#[utoipa::path(
+    post, path = "/v1/render", tag = "render",
+    params(
+        ("if-none-match" = Option<String>, Header, description = "`ETag` of an image at hand."),
+    ),
+    request_body(content = Scene, description = "The scene.", example = example_scene),
+    responses(
+        (
+            status = OK, description = "The picture.",
+            headers(
+                ("etag", description = "Hash of the canonical scene, the program's version and the adapter; images only."),
+                ("server-timing", description = "ms: queue, plan, upload, gpu, readback, encode, total, and `pass-…` for each pass."),
+                ("x-caustica-scene-hash", description = "`blake3:…` of the canonical scene."),
+            ),
+            content((ImageFile = "image/png"), (ImageFile = "image/x-exr"), (RenderAnswer = "application/json")),
+        ),
+        (
+            status = NOT_MODIFIED, description = "The image at hand is the one this scene gives.",
+            headers(("etag", description = "Of the image at hand.")),
+        ),
+        RenderProblems,
+    )
+)]
+pub async fn render(
+    State(state): State<AppState>,
+    Extension(Arrival(arrival)): Extension<Arrival>,
+    headers: HeaderMap,
+    SceneBody(resolved): SceneBody,
+) -> Result<Response, ApiError> {
+    let encoding = resolved.scene.output.encoding();
+    let representation = choose(&headers, encoding.format)?;
+    let scene_hash = resolved.hash();
+    if representation == Representation::Image
+        && let Some(adapter) = state.queue().status().adapter
+        && has_tag(&headers, &entity_tag(&scene_hash, &adapter))
+    {
+        let tag = entity_tag(&scene_hash, &adapter);
+        let headers = [(header::ETAG, tag), (SCENE_HASH, scene_hash)];
+        return Ok((StatusCode::NOT_MODIFIED, headers).into_response());
+    }
+    state.require_trusted_device()?;
+
+    let mut frame = state.queue().render(resolved, arrival).await?;
+    env!("CARGO_PKG_VERSION").clone_into(&mut frame.stats.version);
+    frame.stats.scene_hash.clone_from(&scene_hash);
+    let (encoded, stats) = run_blocking(move || encode_frame(frame, &encoding, arrival)).await?;
+    state.metrics().rendered(arrival.elapsed());
+
+    let tag = entity_tag(&scene_hash, &stats.adapter);
+    let common = [
+        (SERVER_TIMING, server_timing(&stats)),
+        (SCENE_HASH, scene_hash),
+        (header::VARY, "accept".to_owned()),
+    ];
+    Ok(match representation {
+        Representation::Image => (
+            common,
+            [
+                (header::ETAG, tag),
+                (header::CONTENT_TYPE, encoded.media_type.to_owned()),
+            ],
+            encoded.bytes,
+        )
+            .into_response(),
+        Representation::Json => {
+            let answer = run_blocking(move || Ok(Json(inline(&encoded, stats)))).await?;
+            (common, answer).into_response()
+        }
+    })
+}
+
+/// Writes the file, away from the GPU thread, and completes the stats.
+fn encode_frame(
+    mut frame: Frame,
+    encoding: &Encoding,
+    arrival: Instant,
+) -> Result<(Encoded, Stats), ApiError> {
+    let started = Instant::now();
+    let encoded = encode(&frame, encoding, &Metadata::of(&frame.stats))?;
+    let stats = &mut frame.stats;
+    stats.time_ms.encode = started.elapsed().as_secs_f64() * 1e3;
+    stats.time_ms.total = arrival.elapsed().as_secs_f64() * 1e3;
+    stats.warnings.extend(encoded.warnings.iter().cloned());
+    Ok((encoded, frame.stats))
+}
+
+fn inline(encoded: &Encoded, stats: Stats) -> RenderAnswer {
+    RenderAnswer {
+        image: InlineImage {
+            media_type: encoded.media_type.to_owned(),
+            base64: STANDARD.encode(&encoded.bytes),
+        },
+        stats,
+    }
+}
+
+/// A strong entity tag: whatever can change the bytes is in it.
+fn entity_tag(scene_hash: &str, adapter: &AdapterStats) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for part in [
+        scene_hash,
+        env!("CARGO_PKG_VERSION"),
+        &adapter.name,
+        &adapter.backend,
+        &adapter.driver,
+    ] {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part.as_bytes());
+    }
+    format!("\"{}\"", hasher.finalize().to_hex())
+}
+
+/// Whether `If-None-Match` lists the tag (weak comparison, as RFC 9110 has it).
+fn has_tag(headers: &HeaderMap, tag: &str) -> bool {
+    headers
+        .get_all(header::IF_NONE_MATCH)
+        .iter()
+        .filter_map(|value| value.to_str().ok())
+        .flat_map(|value| value.split(','))
+        .map(|listed| listed.trim().trim_start_matches("W/"))
+        .any(|listed| listed == tag)
+}
+
+/// The `Server-Timing` header: the stages in order, then every pass with a GPU time.
+fn server_timing(stats: &Stats) -> String {
+    let time = &stats.time_ms;
+    let mut text = String::new();
+    let stages = [
+        ("queue", time.queue),
+        ("plan", time.plan),
+        ("upload", time.upload),
+        ("gpu", time.gpu),
+        ("readback", time.readback),
+        ("encode", time.encode),
+        ("total", time.total),
+    ];
+    for (name, ms) in stages {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{name};dur={ms:.3}, ");
+    }
+    for pass in &stats.passes {
+        if let Some(ms) = pass.gpu_ms {
+            let _ = write!(text, "pass-{};dur={ms:.3}, ", pass.name);
+        }
+    }
+    text.truncate(text.len() - 2);
+    text
+}
+
+/// A scene to start from: three waves over a sandy floor.
+pub fn example_scene() -> serde_json::Value {
+    json!({
+        "water": {
+            "waves": [
+                { "kind": "sine", "amplitude_m": 0.03, "wavelength_m": 0.9, "direction_deg": 20 },
+                { "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 0.6, "direction_deg": 75, "phase_deg": 40 },
+                { "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 0.35, "direction_deg": -30 }
+            ],
+            "ior": 1.333,
+            "absorption_per_m": [0.35, 0.07, 0.03]
+        },
+        "floor": { "depth_m": 2.0, "size_m": [4, 4], "albedo": [0.7, 0.65, 0.5] },
+        "lights": [
+            { "kind": "sun", "elevation_deg": 60, "azimuth_deg": 30, "irradiance_w_m2": [1000, 1000, 1000] },
+            { "kind": "sky", "radiance_w_m2_sr": [20, 30, 45] }
+        ],
+        "camera": { "position_m": [0, 2.5, 4], "target_m": [0, -1.5, 0], "vertical_fov_deg": 45 },
+        "output": { "kind": "view", "width": 640, "height": 360, "format": "png" },
+        "time_s": 0.0
+    })
+}

@@ -1,0 +1,206 @@
+//! The listening process, from start to graceful shutdown.
+
+use std::io;
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use tokio::net::TcpListener;
+use tokio::sync::watch;
+use tokio_util::sync::CancellationToken;
+
+use super::router::app;
+use super::state::AppState;
+use crate::config::{Limits, RenderConfig, ServeConfig};
+use crate::gpu::GpuError;
+use crate::jobs::{GpuQueue, GpuState, GpuStatus, QueueSettings, RenderBackend};
+use crate::render::Renderer;
+
+/// How much longer than a request's deadline connections are waited for on shutdown.
+const CLOSING_MARGIN: Duration = Duration::from_secs(5);
+
+/// How often recorded metrics are condensed when nobody scrapes.
+const UPKEEP_PERIOD: Duration = Duration::from_secs(5);
+
+/// Why the service does not run, or ended other than asked.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// The address cannot be listened on.
+    #[error("cannot listen on {address}: {source}")]
+    Listen {
+        /// The address.
+        address: SocketAddr,
+        /// Why.
+        source: io::Error,
+    },
+    /// No adapter matches the policy, or its device cannot be opened.
+    #[error("cannot start: {0}")]
+    NoDevice(String),
+    /// The operating system refused a thread, a signal handler or a connection.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+}
+
+/// Runs the service until SIGTERM or SIGINT; a second signal ends it at once.
+///
+/// Listens before the device is open, so that `/healthz` and `/readyz` answer meanwhile.
+///
+/// # Errors
+/// When the address is taken, when no device can be opened at the start, or when the system refuses a resource. A device
+/// lost later is rebuilt and ends nothing.
+pub async fn serve(
+    render: RenderConfig,
+    limits: Limits,
+    serve: ServeConfig,
+) -> Result<(), ServeError> {
+    let listener = TcpListener::bind(serve.listen)
+        .await
+        .map_err(|source| ServeError::Listen {
+            address: serve.listen,
+            source,
+        })?;
+    let config = render.clone();
+    let factory = move || {
+        let renderer = Renderer::new(&config)?;
+        Ok(Box::new(renderer) as Box<dyn RenderBackend>)
+    };
+    serve_with(listener, factory, render, limits, &serve).await
+}
+
+/// [`serve`] on a bound socket, with backends from `factory`; `serve.listen` is not looked at.
+///
+/// # Errors
+/// As [`serve`].
+pub async fn serve_with<F>(
+    listener: TcpListener,
+    factory: F,
+    render: RenderConfig,
+    limits: Limits,
+    serve: &ServeConfig,
+) -> Result<(), ServeError>
+where
+    F: FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send + 'static,
+{
+    tracing::info!(address = %listener.local_addr()?, "listening");
+    let mut signals = Signals::new()?;
+    let settings = QueueSettings {
+        waiting: serve.queue,
+        deadline: Duration::from_secs(serve.deadline_s),
+    };
+    let queue = GpuQueue::start(settings, factory)?;
+    let state = AppState::new(queue.clone(), limits, render);
+    let stop = CancellationToken::new();
+    let drain = Duration::from_secs(serve.drain_s);
+    let served = serve_on(listener, state, drain, stop.clone().cancelled_owned());
+    let signalled = async {
+        signals.next().await;
+        stop.cancel();
+        signals.next().await;
+        tracing::warn!("second signal: ending at once");
+    };
+    let result = tokio::select! {
+        result = served => result,
+        () = signalled => Ok(()),
+        reason = failed_at_start(queue.watch()) => Err(ServeError::NoDevice(reason)),
+    };
+    // Frees the device in order before the process ends.
+    let _ = tokio::task::spawn_blocking(move || queue.close()).await;
+    result
+}
+
+/// Serves on a bound socket until `stop` resolves: then `/readyz` turns red, `drain` passes, connections are refused, and
+/// what is in flight is finished.
+///
+/// # Errors
+/// When the socket fails.
+pub async fn serve_on(
+    listener: TcpListener,
+    state: AppState,
+    drain: Duration,
+    stop: impl Future<Output = ()> + Send + 'static,
+) -> Result<(), ServeError> {
+    let closing = CancellationToken::new();
+    let (closed, draining) = (closing.clone(), state.clone());
+    let stopped = async move {
+        stop.await;
+        draining.start_draining();
+        tracing::info!(drain_s = drain.as_secs_f64(), "draining");
+        tokio::time::sleep(drain).await;
+        tracing::info!("refusing connections, finishing what is in flight");
+        closed.cancel();
+    };
+    let patience = state.queue().settings().deadline + CLOSING_MARGIN;
+    let too_long = async {
+        closing.cancelled().await;
+        tokio::time::sleep(patience).await;
+    };
+    let metrics = state.metrics();
+    let upkeep = async {
+        let mut ticks = tokio::time::interval(UPKEEP_PERIOD);
+        loop {
+            ticks.tick().await;
+            metrics.upkeep();
+        }
+    };
+    let serving = axum::serve(listener, app(state)).with_graceful_shutdown(stopped);
+    tokio::select! {
+        result = async { serving.await } => Ok(result?),
+        () = too_long => {
+            tracing::warn!("connections are still open; leaving them");
+            Ok(())
+        }
+        () = upkeep => Ok(()),
+    }
+}
+
+/// Resolves with the reason if the first try to open a device fails; never otherwise.
+async fn failed_at_start(mut status: watch::Receiver<GpuStatus>) -> String {
+    let first = status
+        .wait_for(|status| status.state != GpuState::Initializing)
+        .await
+        .map(|status| status.state.clone());
+    match first {
+        Ok(GpuState::Failed(reason)) => reason,
+        Ok(_) => std::future::pending().await,
+        Err(_) => "the GPU thread ended".to_owned(),
+    }
+}
+
+/// The signals that end the service.
+struct Signals {
+    #[cfg(unix)]
+    terminate: tokio::signal::unix::Signal,
+    #[cfg(unix)]
+    interrupt: tokio::signal::unix::Signal,
+}
+
+impl Signals {
+    #[cfg(unix)]
+    fn new() -> io::Result<Self> {
+        use tokio::signal::unix::{SignalKind, signal};
+        Ok(Self {
+            terminate: signal(SignalKind::terminate())?,
+            interrupt: signal(SignalKind::interrupt())?,
+        })
+    }
+
+    #[cfg(unix)]
+    async fn next(&mut self) {
+        tokio::select! {
+            _ = self.terminate.recv() => {}
+            _ = self.interrupt.recv() => {}
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn new() -> io::Result<Self> {
+        Ok(Self {})
+    }
+
+    #[cfg(not(unix))]
+    async fn next(&mut self) {
+        // Without a handler there is nothing to wait for.
+        if tokio::signal::ctrl_c().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    }
+}

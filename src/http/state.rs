@@ -1,0 +1,95 @@
+//! What the routes share.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::error::ApiError;
+use super::metrics::Metrics;
+use crate::config::{Limits, RenderConfig};
+use crate::jobs::GpuQueue;
+use crate::mesh::MeshStore;
+
+/// What the routes share; clones are handles on the same thing.
+#[derive(Clone, Debug)]
+pub struct AppState {
+    inner: Arc<Inner>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    queue: GpuQueue,
+    meshes: MeshStore,
+    limits: Limits,
+    render: RenderConfig,
+    metrics: Metrics,
+    draining: AtomicBool,
+}
+
+impl AppState {
+    /// A service on a running queue, with an empty mesh store.
+    pub fn new(queue: GpuQueue, limits: Limits, render: RenderConfig) -> Self {
+        Self {
+            inner: Arc::new(Inner {
+                queue,
+                meshes: MeshStore::new(&limits),
+                limits,
+                render,
+                metrics: Metrics::new(),
+                draining: AtomicBool::new(false),
+            }),
+        }
+    }
+
+    /// The way to the GPU.
+    pub fn queue(&self) -> &GpuQueue {
+        &self.inner.queue
+    }
+
+    /// Uploaded meshes.
+    pub fn meshes(&self) -> &MeshStore {
+        &self.inner.meshes
+    }
+
+    /// What a request may ask for at most.
+    pub fn limits(&self) -> &Limits {
+        &self.inner.limits
+    }
+
+    /// Settings of the renderer.
+    pub fn render_config(&self) -> &RenderConfig {
+        &self.inner.render
+    }
+
+    /// Counters and gauges.
+    pub fn metrics(&self) -> Metrics {
+        self.inner.metrics
+    }
+
+    /// Turns `/readyz` red for good, so that nobody sends more work; requests are still served.
+    pub fn start_draining(&self) {
+        self.inner.draining.store(true, Ordering::Release);
+    }
+
+    /// Why work should not be sent here, one sentence each; empty when the service is ready.
+    pub fn obstacles(&self) -> Vec<String> {
+        let mut obstacles = self.inner.queue.status().obstacles();
+        if self.inner.draining.load(Ordering::Acquire) {
+            obstacles.push("the service is shutting down".to_owned());
+        }
+        obstacles
+    }
+
+    /// Refuses work for a device that has failed its self-check: its pictures could not be trusted.
+    ///
+    /// # Errors
+    /// [`ApiError::NotReady`].
+    pub fn require_trusted_device(&self) -> Result<(), ApiError> {
+        let status = self.inner.queue.status();
+        match &status.self_check {
+            Some(check) if !check.passed => Err(ApiError::NotReady {
+                reasons: status.obstacles(),
+            }),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! The GPU thread: builds the backend, runs jobs, and recovers from loss and panic.
+
+use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use tokio::sync::watch;
+
+use super::backend::RenderBackend;
+use super::error::JobError;
+use super::job::{Job, JobContext};
+use super::queue::lock;
+use super::status::{GpuState, GpuStatus};
+use crate::gpu::GpuError;
+use crate::render::{RenderError, SelfCheck, SelfCheckItem};
+
+/// How long the thread sleeps when there is nothing to do; a device lost in idleness is noticed within this.
+const IDLE_PERIOD: Duration = Duration::from_secs(1);
+
+/// Pause between tries to open a device that could not be opened.
+const REOPEN_PERIOD: Duration = Duration::from_secs(5);
+
+/// Weight of the newest job in the typical job time.
+const JOB_TIME_WEIGHT: f64 = 0.25;
+
+type Factory = Box<dyn FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send>;
+
+/// How one run of a job ended, if not with an answer.
+enum Failure {
+    /// The backend returned an error.
+    Error(RenderError),
+    /// The backend panicked with this message.
+    Panic(String),
+}
+
+/// State of the thread.
+pub(super) struct Worker {
+    factory: Factory,
+    jobs: Receiver<Job>,
+    publish: watch::Sender<GpuStatus>,
+    forgotten: Arc<Mutex<BTreeSet<String>>>,
+    last_try: Instant,
+}
+
+impl Worker {
+    pub(super) fn new(
+        factory: Factory,
+        jobs: Receiver<Job>,
+        publish: watch::Sender<GpuStatus>,
+        forgotten: Arc<Mutex<BTreeSet<String>>>,
+    ) -> Self {
+        Self {
+            factory,
+            jobs,
+            publish,
+            forgotten,
+            last_try: Instant::now(),
+        }
+    }
+
+    /// Runs until all senders are gone.
+    pub(super) fn run(mut self) {
+        let mut backend = self.open();
+        loop {
+            match self.jobs.recv_timeout(IDLE_PERIOD) {
+                Ok(job) => self.serve(&mut backend, job),
+                Err(RecvTimeoutError::Timeout) => self.idle(&mut backend),
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+        }
+        discard(&mut backend);
+    }
+
+    /// Builds a backend, proves it, and publishes what came of it.
+    fn open(&mut self) -> Option<Box<dyn RenderBackend>> {
+        self.last_try = Instant::now();
+        let opened = catch_unwind(AssertUnwindSafe(|| {
+            let mut backend = (self.factory)()?;
+            let check = backend.self_check()?;
+            Ok::<_, GpuError>((backend.adapter(), check, backend))
+        }))
+        .unwrap_or_else(|panic| Err(GpuError::Validation(panic_message(&*panic))));
+        match opened {
+            Ok((adapter, check, backend)) => {
+                let check = judged(check);
+                tracing::info!(
+                    adapter = adapter.name,
+                    backend = adapter.backend,
+                    software = adapter.software,
+                    self_check = check.passed,
+                    "GPU device opened"
+                );
+                self.publish.send_modify(|status| {
+                    status.state = GpuState::Ready;
+                    status.adapter = Some(adapter);
+                    status.self_check = Some(check);
+                });
+                Some(backend)
+            }
+            Err(error) => {
+                tracing::error!(%error, "no GPU device");
+                self.publish.send_modify(|status| {
+                    status.state = GpuState::Failed(error.to_string());
+                    status.self_check = None;
+                });
+                None
+            }
+        }
+    }
+
+    /// Gives up the backend and builds another.
+    fn reopen(&mut self, backend: &mut Option<Box<dyn RenderBackend>>, why: &str) {
+        tracing::warn!(why, "rebuilding the GPU device");
+        self.publish.send_modify(|status| {
+            status.state = GpuState::Lost(why.to_owned());
+            status.self_check = None;
+            status.losses += 1;
+        });
+        discard(backend);
+        *backend = self.open();
+    }
+
+    fn idle(&mut self, backend: &mut Option<Box<dyn RenderBackend>>) {
+        match backend {
+            Some(present) => {
+                let polled = catch_unwind(AssertUnwindSafe(|| present.idle()));
+                match polled {
+                    Ok(Ok(())) => self.after_work(present),
+                    Ok(Err(error)) if is_loss(&error) => self.reopen(backend, &error.to_string()),
+                    Ok(Err(error)) => tracing::warn!(%error, "the idle device reported an error"),
+                    Err(panic) => self.reopen(backend, &panic_message(&*panic)),
+                }
+            }
+            None if self.last_try.elapsed() >= REOPEN_PERIOD => *backend = self.open(),
+            None => {}
+        }
+    }
+
+    /// Runs one job to its end: an answer, an error, or the second loss.
+    fn serve(&mut self, backend: &mut Option<Box<dyn RenderBackend>>, mut job: Job) {
+        let queued = job.arrival.elapsed();
+        let mut may_retry = true;
+        loop {
+            // Between arrival and now everybody may have left, and the device too.
+            if job.cancel.is_cancelled() {
+                return job.work.fail(JobError::Cancelled);
+            }
+            let Some(present) = backend else {
+                let why = match &self.publish.borrow().state {
+                    GpuState::Failed(why) => why.clone(),
+                    state => format!("{state:?}"),
+                };
+                return job.work.fail(JobError::Unavailable(why));
+            };
+            let started = Instant::now();
+            let context = JobContext {
+                cancel: &job.cancel,
+                queued,
+            };
+            match attempt(&mut job.work, &mut **present, &context, &self.forgotten) {
+                Ok(()) => {
+                    self.record_job_time(started.elapsed());
+                    return self.after_work(present);
+                }
+                Err(Failure::Error(RenderError::Gpu(error))) if is_loss(&error) => {
+                    self.reopen(backend, &error.to_string());
+                    // A hang is not tried again: it would hold everybody up twice.
+                    if !may_retry || matches!(error, GpuError::Timeout(_)) {
+                        return job.work.fail(RenderError::Gpu(error).into());
+                    }
+                    may_retry = false;
+                }
+                Err(Failure::Error(RenderError::Cancelled)) => {
+                    return job.work.fail(JobError::Cancelled);
+                }
+                Err(Failure::Error(error)) => {
+                    self.after_work(present);
+                    return job.work.fail(error.into());
+                }
+                Err(Failure::Panic(message)) => {
+                    // Rebuilt first, so that whoever reads the answer finds the service whole.
+                    self.reopen(backend, &format!("the renderer panicked: {message}"));
+                    return job.work.fail(JobError::Panicked(message));
+                }
+            }
+        }
+    }
+
+    fn record_job_time(&self, took: Duration) {
+        self.publish.send_modify(|status| {
+            let seconds = took.as_secs_f64();
+            status.job_s = if status.job_s == 0.0 {
+                seconds
+            } else {
+                status.job_s + JOB_TIME_WEIGHT * (seconds - status.job_s)
+            };
+        });
+    }
+
+    /// Frees what was forgotten and publishes the state of the cache.
+    fn after_work(&self, backend: &mut Box<dyn RenderBackend>) {
+        let forgotten = &self.forgotten;
+        let cache = catch_unwind(AssertUnwindSafe(|| {
+            forget(&mut **backend, forgotten);
+            backend.level_map_cache()
+        }));
+        match cache {
+            Ok(cache) => self.publish.send_modify(|status| status.level_maps = cache),
+            Err(panic) => {
+                tracing::error!(
+                    panic = panic_message(&*panic),
+                    "the level-map cache panicked"
+                );
+            }
+        }
+    }
+}
+
+/// One guarded run of a job.
+///
+/// The backend is thrown away after a panic, so nothing half-changed is seen again.
+fn attempt(
+    work: &mut Box<dyn super::job::Work>,
+    backend: &mut dyn RenderBackend,
+    context: &JobContext<'_>,
+    forgotten: &Mutex<BTreeSet<String>>,
+) -> Result<(), Failure> {
+    match catch_unwind(AssertUnwindSafe(|| {
+        forget(backend, forgotten);
+        work.run(backend, context)
+    })) {
+        Ok(Ok(())) => Ok(()),
+        Ok(Err(error)) => Err(Failure::Error(error)),
+        Err(panic) => Err(Failure::Panic(panic_message(&*panic))),
+    }
+}
+
+fn forget(backend: &mut dyn RenderBackend, forgotten: &Mutex<BTreeSet<String>>) {
+    for id in std::mem::take(&mut *lock(forgotten)) {
+        backend.forget_mesh(&id);
+    }
+}
+
+/// Drops a backend; a panic while doing so must not take the thread along.
+fn discard(backend: &mut Option<Box<dyn RenderBackend>>) {
+    if let Some(old) = backend.take()
+        && let Err(panic) = catch_unwind(AssertUnwindSafe(move || drop(old)))
+    {
+        tracing::error!(
+            panic = panic_message(&*panic),
+            "dropping the device panicked"
+        );
+    }
+}
+
+/// Whether the device is of no use any more.
+fn is_loss(error: &GpuError) -> bool {
+    matches!(error, GpuError::DeviceLost(_) | GpuError::Timeout(_))
+}
+
+/// A check that checked nothing has not passed.
+fn judged(mut check: SelfCheck) -> SelfCheck {
+    if check.checks.is_empty() {
+        check.passed = false;
+        check.checks.push(SelfCheckItem {
+            name: "no check ran".to_owned(),
+            ..SelfCheckItem::default()
+        });
+    }
+    check
+}
+
+fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
+    panic
+        .downcast_ref::<&str>()
+        .map(|message| (*message).to_owned())
+        .or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "no message".to_owned())
+}
