@@ -45,7 +45,11 @@ impl GpuContext {
         let limits = wanted_limits(&adapter.limits());
         let (device, queue) = block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("caustica"),
-            required_features: if timestamps { wgpu::Features::TIMESTAMP_QUERY } else { wgpu::Features::empty() },
+            required_features: if timestamps {
+                wgpu::Features::TIMESTAMP_QUERY
+            } else {
+                wgpu::Features::empty()
+            },
             required_limits: limits.clone(),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..Default::default()
@@ -56,11 +60,20 @@ impl GpuContext {
         let adapter = AdapterStats {
             name: info.name,
             backend: format!("{:?}", info.backend).to_lowercase(),
-            driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+            driver: format!("{} {}", info.driver, info.driver_info)
+                .trim()
+                .to_owned(),
             software: info.device_type == wgpu::DeviceType::Cpu,
         };
         tracing::info!(adapter = %adapter.name, driver = %adapter.driver, software = adapter.software, "GPU context open");
-        Ok(Self { device, queue, limits, timestamps, adapter, errors })
+        Ok(Self {
+            device,
+            queue,
+            limits,
+            timestamps,
+            adapter,
+            errors,
+        })
     }
 
     /// Where this runs.
@@ -82,9 +95,10 @@ impl GpuContext {
 
     /// Blocks until everything submitted is done.
     pub fn wait(&self) -> Result<(), GpuError> {
-        let polled = self
-            .device
-            .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(WAIT_S)) });
+        let polled = self.device.poll(wgpu::PollType::Wait {
+            submission_index: None,
+            timeout: Some(Duration::from_secs(WAIT_S)),
+        });
         self.check()?;
         match polled {
             Ok(_) => Ok(()),

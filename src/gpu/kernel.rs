@@ -44,23 +44,37 @@ impl Kernel {
         constants: &[(&'static str, f64)],
     ) -> Result<Self, GpuError> {
         let module = Module::parse(path, text)?;
-        let layout = BoundLayout::new(gpu, path, module.bindings(path, entry)?, wgpu::ShaderStages::COMPUTE);
+        let layout = BoundLayout::new(
+            gpu,
+            path,
+            module.bindings(path, entry)?,
+            wgpu::ShaderStages::COMPUTE,
+        );
         let shader = shader_module(gpu, path, &module);
-        let constants: Vec<(&str, f64)> =
-            constants.iter().copied().filter(|(name, _)| module.has_override(name)).collect();
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry),
-            layout: Some(&layout.pipeline_layout(gpu, entry)),
-            module: &shader,
-            entry_point: Some(entry),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &constants,
-                ..wgpu::PipelineCompilationOptions::default()
-            },
-            cache: None,
-        });
+        let constants: Vec<(&str, f64)> = constants
+            .iter()
+            .copied()
+            .filter(|(name, _)| module.has_override(name))
+            .collect();
+        let pipeline = gpu
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&layout.pipeline_layout(gpu, entry)),
+                module: &shader,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &constants,
+                    ..wgpu::PipelineCompilationOptions::default()
+                },
+                cache: None,
+            });
         gpu.check()?;
-        Ok(Self { name: entry.to_owned(), layout, pipeline })
+        Ok(Self {
+            name: entry.to_owned(),
+            layout,
+            pipeline,
+        })
     }
 
     /// What the kernel binds.
@@ -120,37 +134,46 @@ impl RasterKernel {
         }
         let layout = BoundLayout::new(gpu, path, bindings, wgpu::ShaderStages::VERTEX_FRAGMENT);
         let shader = shader_module(gpu, path, &module);
-        let colors: Vec<Option<wgpu::ColorTargetState>> =
-            targets.colors.iter().map(|&format| Some(format.into())).collect();
-        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(vertex),
-            layout: Some(&layout.pipeline_layout(gpu, vertex)),
-            vertex: wgpu::VertexState {
-                module: &shader,
-                entry_point: Some(vertex),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: targets.depth,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(targets.depth_compare),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &shader,
-                entry_point: Some(fragment),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &colors,
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let colors: Vec<Option<wgpu::ColorTargetState>> = targets
+            .colors
+            .iter()
+            .map(|&format| Some(format.into()))
+            .collect();
+        let pipeline = gpu
+            .device
+            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(vertex),
+                layout: Some(&layout.pipeline_layout(gpu, vertex)),
+                vertex: wgpu::VertexState {
+                    module: &shader,
+                    entry_point: Some(vertex),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: targets.depth,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(targets.depth_compare),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &shader,
+                    entry_point: Some(fragment),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &colors,
+                }),
+                multiview_mask: None,
+                cache: None,
+            });
         gpu.check()?;
-        Ok(Self { name: vertex.to_owned(), layout, pipeline })
+        Ok(Self {
+            name: vertex.to_owned(),
+            layout,
+            pipeline,
+        })
     }
 
     /// A bind group from what `find` returns for each variable's name.
@@ -169,10 +192,11 @@ impl RasterKernel {
 }
 
 fn shader_module(gpu: &GpuContext, path: &str, module: &Module) -> wgpu::ShaderModule {
-    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(path),
-        source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()),
-    })
+    gpu.device
+        .create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(path),
+            source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()),
+        })
 }
 
 #[derive(Debug)]
@@ -182,7 +206,12 @@ struct BoundLayout {
 }
 
 impl BoundLayout {
-    fn new(gpu: &GpuContext, path: &str, bindings: Vec<Reflected>, stages: wgpu::ShaderStages) -> Self {
+    fn new(
+        gpu: &GpuContext,
+        path: &str,
+        bindings: Vec<Reflected>,
+        stages: wgpu::ShaderStages,
+    ) -> Self {
         let entries: Vec<wgpu::BindGroupLayoutEntry> = bindings
             .iter()
             .map(|b| wgpu::BindGroupLayoutEntry {
@@ -194,16 +223,20 @@ impl BoundLayout {
             .collect();
         let layout = gpu
             .device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(path), entries: &entries });
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some(path),
+                entries: &entries,
+            });
         Self { bindings, layout }
     }
 
     fn pipeline_layout(&self, gpu: &GpuContext, label: &str) -> wgpu::PipelineLayout {
-        gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(label),
-            bind_group_layouts: &[Some(&self.layout)],
-            ..Default::default()
-        })
+        gpu.device
+            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(label),
+                bind_group_layouts: &[Some(&self.layout)],
+                ..Default::default()
+            })
     }
 
     fn bind<'a>(
@@ -222,7 +255,10 @@ impl BoundLayout {
                 Binding::Buffer(buffer) => buffer.as_entire_binding(),
                 Binding::Texture(view) => wgpu::BindingResource::TextureView(view),
             };
-            entries.push(wgpu::BindGroupEntry { binding: b.binding, resource });
+            entries.push(wgpu::BindGroupEntry {
+                binding: b.binding,
+                resource,
+            });
         }
         Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(name),
@@ -233,7 +269,11 @@ impl BoundLayout {
 }
 
 fn binding_type(access: Access) -> wgpu::BindingType {
-    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let buffer = |ty| wgpu::BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
     match access {
         Access::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
         Access::StorageRead => buffer(wgpu::BufferBindingType::Storage { read_only: true }),

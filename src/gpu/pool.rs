@@ -28,11 +28,20 @@ impl BufferPool {
     }
 
     /// Lends a buffer of exactly `bytes` (rounded up to 4) with `usage`; its content is undefined.
-    pub fn lend(&mut self, device: &wgpu::Device, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    pub fn lend(
+        &mut self,
+        device: &wgpu::Device,
+        label: &str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
         let size = bytes.max(4).next_multiple_of(4);
         self.lent_bytes += size;
         self.peak_bytes = self.peak_bytes.max(self.lent_bytes);
-        let found = self.free.iter().position(|f| f.buffer.size() == size && f.buffer.usage() == usage);
+        let found = self
+            .free
+            .iter()
+            .position(|f| f.buffer.size() == size && f.buffer.usage() == usage);
         match found {
             Some(index) => self.free.swap_remove(index).buffer,
             None => device.create_buffer(&wgpu::BufferDescriptor {
@@ -47,7 +56,10 @@ impl BufferPool {
     /// Takes a buffer back.
     pub fn give_back(&mut self, buffer: wgpu::Buffer) {
         self.lent_bytes -= buffer.size();
-        self.free.push(Free { buffer, last_used: self.frame });
+        self.free.push(Free {
+            buffer,
+            last_used: self.frame,
+        });
     }
 
     /// Drops all free buffers.

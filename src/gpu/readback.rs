@@ -5,14 +5,20 @@ use bytemuck::Pod;
 use super::{GpuContext, GpuError};
 
 /// Reads the first `bytes` bytes of `source` (usage COPY_SRC) as values of `T`; waits for everything submitted.
-pub fn read<T: Pod>(gpu: &GpuContext, source: &wgpu::Buffer, bytes: u64) -> Result<Vec<T>, GpuError> {
+pub fn read<T: Pod>(
+    gpu: &GpuContext,
+    source: &wgpu::Buffer,
+    bytes: u64,
+) -> Result<Vec<T>, GpuError> {
     let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("readback"),
         size: bytes,
         usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_buffer_to_buffer(source, 0, &staging, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
     let (send, receive) = std::sync::mpsc::channel();
@@ -23,8 +29,16 @@ pub fn read<T: Pod>(gpu: &GpuContext, source: &wgpu::Buffer, bytes: u64) -> Resu
     gpu.wait()?;
     match receive.try_recv() {
         Ok(Ok(())) => {}
-        Ok(Err(error)) => return Err(GpuError::Validation(format!("mapping a readback buffer: {error}"))),
-        Err(_) => return Err(GpuError::Validation("a readback buffer was not mapped after the wait".to_owned())),
+        Ok(Err(error)) => {
+            return Err(GpuError::Validation(format!(
+                "mapping a readback buffer: {error}"
+            )));
+        }
+        Err(_) => {
+            return Err(GpuError::Validation(
+                "a readback buffer was not mapped after the wait".to_owned(),
+            ));
+        }
     }
     let view = staging
         .get_mapped_range(..)

@@ -19,7 +19,12 @@ pub struct ShaderSources {
 impl ShaderSources {
     /// Sources from (path, text) pairs.
     pub fn new(files: &[(&'static str, &'static str)]) -> Self {
-        Self { files: files.iter().map(|&(path, text)| (path, Cow::Borrowed(text))).collect() }
+        Self {
+            files: files
+                .iter()
+                .map(|&(path, text)| (path, Cow::Borrowed(text)))
+                .collect(),
+        }
     }
 
     /// Paths of all files, sorted.
@@ -49,16 +54,26 @@ impl ShaderSources {
         Ok(out)
     }
 
-    fn paste(&self, path: &str, out: &mut String, done: &mut BTreeSet<String>) -> Result<(), GpuError> {
+    fn paste(
+        &self,
+        path: &str,
+        out: &mut String,
+        done: &mut BTreeSet<String>,
+    ) -> Result<(), GpuError> {
         if !done.insert(path.to_owned()) {
             return Ok(());
         }
-        let text = self.text(path).ok_or_else(|| shader_error(path, "no such file"))?;
+        let text = self
+            .text(path)
+            .ok_or_else(|| shader_error(path, "no such file"))?;
         for line in text.lines() {
             if let Some(rest) = line.trim_start().strip_prefix("#import") {
                 let name = rest.trim().trim_matches('"');
                 if self.text(name).is_none() {
-                    return Err(shader_error(path, &format!("imports `{name}`, which does not exist")));
+                    return Err(shader_error(
+                        path,
+                        &format!("imports `{name}`, which does not exist"),
+                    ));
                 }
                 self.paste(name, out, done)?;
             } else {
@@ -71,7 +86,10 @@ impl ShaderSources {
 }
 
 fn shader_error(shader: &str, message: &str) -> GpuError {
-    GpuError::Shader { shader: shader.to_owned(), message: message.to_owned() }
+    GpuError::Shader {
+        shader: shader.to_owned(),
+        message: message.to_owned(),
+    }
 }
 
 /// How an entry point uses a resource.
@@ -133,7 +151,9 @@ impl Module {
         let used = self.info.get_entry_point(index);
         let mut found = Vec::new();
         for (handle, variable) in self.ir.global_variables.iter() {
-            let Some(binding) = variable.binding else { continue };
+            let Some(binding) = variable.binding else {
+                continue;
+            };
             if used[handle].is_empty() {
                 continue;
             }
@@ -141,14 +161,27 @@ impl Module {
                 return Err(shader_error(name, "only bind group 0 is used"));
             }
             let label = variable.name.clone().unwrap_or_default();
-            let access = self
-                .access(variable)
-                .ok_or_else(|| shader_error(name, &format!("`{label}` is of a kind that is not supported")))?;
-            found.push(Reflected { name: label, binding: binding.binding, access });
+            let access = self.access(variable).ok_or_else(|| {
+                shader_error(
+                    name,
+                    &format!("`{label}` is of a kind that is not supported"),
+                )
+            })?;
+            found.push(Reflected {
+                name: label,
+                binding: binding.binding,
+                access,
+            });
         }
         found.sort_by_key(|r| r.binding);
-        if let Some(pair) = found.windows(2).find(|pair| pair[0].binding == pair[1].binding) {
-            let message = format!("`{}` and `{}` share binding {}", pair[0].name, pair[1].name, pair[0].binding);
+        if let Some(pair) = found
+            .windows(2)
+            .find(|pair| pair[0].binding == pair[1].binding)
+        {
+            let message = format!(
+                "`{}` and `{}` share binding {}",
+                pair[0].name, pair[1].name, pair[0].binding
+            );
             return Err(shader_error(name, &message));
         }
         Ok(found)
@@ -156,21 +189,27 @@ impl Module {
 
     /// Whether the module declares an `override` of this name.
     pub fn has_override(&self, name: &str) -> bool {
-        self.ir.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(name))
+        self.ir
+            .overrides
+            .iter()
+            .any(|(_, o)| o.name.as_deref() == Some(name))
     }
 
     fn access(&self, variable: &naga::GlobalVariable) -> Option<Access> {
         let inner = &self.ir.types[variable.ty].inner;
         match variable.space {
             naga::AddressSpace::Uniform => Some(Access::Uniform(inner.size(self.ir.to_ctx()))),
-            naga::AddressSpace::Storage { access } if access.contains(naga::StorageAccess::STORE) => {
+            naga::AddressSpace::Storage { access }
+                if access.contains(naga::StorageAccess::STORE) =>
+            {
                 Some(Access::StorageWrite)
             }
             naga::AddressSpace::Storage { .. } => Some(Access::StorageRead),
             naga::AddressSpace::Handle => match inner {
-                naga::TypeInner::Image { class: naga::ImageClass::Sampled { kind, .. }, .. } => {
-                    Some(Access::Texture(*kind == naga::ScalarKind::Uint))
-                }
+                naga::TypeInner::Image {
+                    class: naga::ImageClass::Sampled { kind, .. },
+                    ..
+                } => Some(Access::Texture(*kind == naga::ScalarKind::Uint)),
                 _ => None,
             },
             _ => None,

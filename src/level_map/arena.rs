@@ -2,7 +2,9 @@
 
 /// What is asked for cannot fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("level maps of {needed_bytes} bytes are needed at once, the budget is {budget_bytes} bytes")]
+#[error(
+    "level maps of {needed_bytes} bytes are needed at once, the budget is {budget_bytes} bytes"
+)]
 pub struct ArenaError {
     /// Bytes needed at once.
     pub needed_bytes: u64,
@@ -20,7 +22,10 @@ pub struct Arena {
 impl Arena {
     /// An empty arena of `size` bytes.
     pub fn new(size: u64) -> Self {
-        Self { size, free: vec![(0, size)] }
+        Self {
+            size,
+            free: vec![(0, size)],
+        }
     }
 
     /// The offset of a range of `bytes`, or `None` when no free range is long enough.
@@ -56,6 +61,9 @@ impl Arena {
 
     /// Bytes that are free, in how many pieces.
     pub fn free_bytes(&self) -> (u64, usize) {
-        (self.free.iter().map(|&(_, length)| length).sum(), self.free.len())
+        (
+            self.free.iter().map(|&(_, length)| length).sum(),
+            self.free.len(),
+        )
     }
 }

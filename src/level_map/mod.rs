@@ -33,8 +33,16 @@ pub struct LevelMapCache {
 impl LevelMapCache {
     /// An empty cache of at most `budget_bytes`.
     pub fn new(budget_bytes: u64) -> Self {
-        let totals = CacheStats { budget_bytes, ..CacheStats::default() };
-        Self { arena: Arena::new(budget_bytes), entries: BTreeMap::new(), clock: 0, totals }
+        let totals = CacheStats {
+            budget_bytes,
+            ..CacheStats::default()
+        };
+        Self {
+            arena: Arena::new(budget_bytes),
+            entries: BTreeMap::new(),
+            clock: 0,
+            totals,
+        }
     }
 
     /// Whether a map is there.
@@ -54,7 +62,10 @@ impl LevelMapCache {
     pub fn reserve(&mut self, keys: &[&LevelMapKey]) -> Result<Vec<LevelMapKey>, ArenaError> {
         let needed: u64 = keys.iter().map(|key| key.bytes()).sum();
         if needed > self.totals.budget_bytes {
-            return Err(ArenaError { needed_bytes: needed, budget_bytes: self.totals.budget_bytes });
+            return Err(ArenaError {
+                needed_bytes: needed,
+                budget_bytes: self.totals.budget_bytes,
+            });
         }
         self.clock += 1;
         for key in keys {
@@ -63,8 +74,11 @@ impl LevelMapCache {
                 self.totals.hits += 1;
             }
         }
-        let missing: Vec<LevelMapKey> =
-            keys.iter().filter(|key| !self.entries.contains_key(**key)).map(|key| (*key).clone()).collect();
+        let missing: Vec<LevelMapKey> = keys
+            .iter()
+            .filter(|key| !self.entries.contains_key(**key))
+            .map(|key| (*key).clone())
+            .collect();
         for key in &missing {
             let bytes = key.bytes();
             let offset = loop {
@@ -74,12 +88,22 @@ impl LevelMapCache {
                 if !self.evict_oldest() {
                     // What the frame needs fits, but not around the pieces it already has: start over with an empty arena.
                     self.clear();
-                    self.totals.hits = self.totals.hits.saturating_sub((keys.len() - missing.len()) as u64);
+                    self.totals.hits = self
+                        .totals
+                        .hits
+                        .saturating_sub((keys.len() - missing.len()) as u64);
                     return self.reserve(keys);
                 }
             };
             self.totals.misses += 1;
-            self.entries.insert(key.clone(), Entry { offset, bytes, last_used: self.clock });
+            self.entries.insert(
+                key.clone(),
+                Entry {
+                    offset,
+                    bytes,
+                    last_used: self.clock,
+                },
+            );
         }
         Ok(missing)
     }
@@ -112,7 +136,12 @@ impl LevelMapCache {
 
     /// Forgets all maps of a mesh.
     pub fn forget_mesh(&mut self, mesh: &str) {
-        let keys: Vec<LevelMapKey> = self.entries.keys().filter(|key| key.mesh == mesh).cloned().collect();
+        let keys: Vec<LevelMapKey> = self
+            .entries
+            .keys()
+            .filter(|key| key.mesh == mesh)
+            .cloned()
+            .collect();
         self.forget(&keys);
     }
 

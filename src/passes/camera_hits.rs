@@ -11,7 +11,12 @@ pub const PASS: PassDesc = PassDesc {
     repeat: Repeat::Band,
     reads: &[Slot::Waves, Slot::Geometry, Slot::Instances],
     reads_if_present: &[],
-    writes: &[Slot::VisiblePosition, Slot::VisibleNormal, Slot::VisibleAlbedo, Slot::VisibleTransport],
+    writes: &[
+        Slot::VisiblePosition,
+        Slot::VisibleNormal,
+        Slot::VisibleAlbedo,
+        Slot::VisibleTransport,
+    ],
     wanted: wanted_for_camera,
     steps: |facts, run| pixel_step("camera_hits_main", facts, run),
 };
@@ -19,24 +24,35 @@ pub const PASS: PassDesc = PassDesc {
 /// Passes that follow a picture are in when there is one.
 pub(super) fn wanted_for_camera(facts: &SceneFacts) -> Result<String, String> {
     match &facts.camera {
-        Some(camera) => Ok(format!("a view of {} × {} pixels", camera.width, camera.height)),
+        Some(camera) => Ok(format!(
+            "a view of {} × {} pixels",
+            camera.width, camera.height
+        )),
         None => Err("the output is an irradiance map, seen by no camera".to_owned()),
     }
 }
 
 /// One invocation per pixel of a band.
 pub(super) fn pixel_step(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
-    let (Run::Band { first_row, rows }, Some(camera)) = (run, &facts.camera) else { return Vec::new() };
+    let (Run::Band { first_row, rows }, Some(camera)) = (run, &facts.camera) else {
+        return Vec::new();
+    };
     vec![Step {
         entry,
-        work: Work::Compute(Groups::Direct([camera.width.div_ceil(8), rows.div_ceil(8), 1])),
+        work: Work::Compute(Groups::Direct([
+            camera.width.div_ceil(8),
+            rows.div_ceil(8),
+            1,
+        ])),
         uniforms: vec![("view", view_uniform(facts, first_row, rows))],
     }]
 }
 
 /// The uniform of a band.
 pub(super) fn view_uniform(facts: &SceneFacts, first_row: u32, rows: u32) -> Vec<u8> {
-    let Some(camera) = &facts.camera else { return Vec::new() };
+    let Some(camera) = &facts.camera else {
+        return Vec::new();
+    };
     let floor = facts.floor.as_ref();
     let view = View {
         eye: vec4(camera.eye, 0.0),

@@ -13,7 +13,13 @@ pub const MAX_SUNS: usize = 16;
 pub const PASS: PassDesc = PassDesc {
     name: "camera_irradiance",
     repeat: Repeat::Band,
-    reads: &[Slot::VisiblePosition, Slot::VisibleNormal, Slot::Geometry, Slot::Instances, Slot::AllReceivers],
+    reads: &[
+        Slot::VisiblePosition,
+        Slot::VisibleNormal,
+        Slot::Geometry,
+        Slot::Instances,
+        Slot::AllReceivers,
+    ],
     reads_if_present: &[Slot::Irradiance, Slot::LevelMaps],
     writes: &[Slot::VisibleIrradiance],
     wanted: |facts| {
@@ -36,7 +42,10 @@ pub const PASS: PassDesc = PassDesc {
 fn suns(facts: &SceneFacts) -> Vec<u8> {
     let mut suns = [SunLight::default(); MAX_SUNS];
     for (slot, (to_light, irradiance)) in suns.iter_mut().zip(&facts.air_suns) {
-        *slot = SunLight { to_light: vec4(*to_light, 0.0), irradiance_w_m2: vec4(*irradiance, 0.0) };
+        *slot = SunLight {
+            to_light: vec4(*to_light, 0.0),
+            irradiance_w_m2: vec4(*irradiance, 0.0),
+        };
     }
     bytemuck::bytes_of(&suns).to_vec()
 }

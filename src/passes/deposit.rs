@@ -14,7 +14,9 @@ pub const PASS: PassDesc = PassDesc {
     writes: &[Slot::Flux, Slot::Energy, Slot::SplitQueue, Slot::WideQueue],
     wanted: wanted_for_sun,
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else { return Vec::new() };
+        let Run::Sun { index, wide_sums } = run else {
+            return Vec::new();
+        };
         let groups = facts.quality.water_cells.div_ceil(8);
         let uniforms = vec![("light", light_uniform(facts, index, wide_sums))];
         vec![
@@ -23,7 +25,11 @@ pub const PASS: PassDesc = PassDesc {
                 work: Work::Compute(Groups::Direct([groups, groups, 1])),
                 uniforms: uniforms.clone(),
             },
-            Step { entry: "deposit_wide", work: Work::Compute(Groups::Queue(Slot::WideQueue)), uniforms },
+            Step {
+                entry: "deposit_wide",
+                work: Work::Compute(Groups::Queue(Slot::WideQueue)),
+                uniforms,
+            },
         ]
     },
 };

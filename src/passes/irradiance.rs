@@ -17,17 +17,25 @@ pub const PASS: PassDesc = PassDesc {
         wanted_for_sun(facts)?;
         let mut parts = Vec::new();
         if let Some(map) = facts.floor_map {
-            parts.push(format!("the floor's map of {} × {} texels", map.width, map.height));
+            parts.push(format!(
+                "the floor's map of {} × {} texels",
+                map.width, map.height
+            ));
         }
         let wet = facts.wet_objects().count();
         if wet > 0 {
             let side = facts.quality.level_map_texels;
-            parts.push(format!("{wet} object map{} of {side}² texels", if wet == 1 { "" } else { "s" }));
+            parts.push(format!(
+                "{wet} object map{} of {side}² texels",
+                if wet == 1 { "" } else { "s" }
+            ));
         }
         Ok(parts.join(" and "))
     },
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else { return Vec::new() };
+        let Run::Sun { index, wide_sums } = run else {
+            return Vec::new();
+        };
         let mut steps = Vec::new();
         for (number, receiver) in receivers(facts, index, |_| 0).iter().enumerate() {
             let texels = receiver.map_width * receiver.map_height;

@@ -18,8 +18,13 @@ pub const PASS: PassDesc = PassDesc {
     writes: &[Slot::Energy],
     wanted: wanted_for_sun,
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else { return Vec::new() };
-        let span = Span { texel_count: slot::flux_texels(facts), ..Span::default() };
+        let Run::Sun { index, wide_sums } = run else {
+            return Vec::new();
+        };
+        let span = Span {
+            texel_count: slot::flux_texels(facts),
+            ..Span::default()
+        };
         let groups = span.texel_count.div_ceil(TEXELS_PER_GROUP);
         vec![Step {
             entry: "landed_main",

@@ -15,12 +15,23 @@ pub const PASS: PassDesc = PassDesc {
     writes: &[Slot::LevelMaps],
     wanted: wanted_for_objects,
     steps: |_, run| {
-        let Run::LevelMap { level_box, arena_offset, first_triangle, triangles } = run else { return Vec::new() };
+        let Run::LevelMap {
+            level_box,
+            arena_offset,
+            first_triangle,
+            triangles,
+        } = run
+        else {
+            return Vec::new();
+        };
         let view = view_of(level_box, arena_offset, first_triangle);
         [false, true]
             .map(|back| Step {
                 entry: "level_map_vertex",
-                work: Work::DrawLevelMap { back, vertices: 3 * triangles },
+                work: Work::DrawLevelMap {
+                    back,
+                    vertices: 3 * triangles,
+                },
                 uniforms: vec![("level_map_view", bytemuck::bytes_of(&view).to_vec())],
             })
             .to_vec()
@@ -34,11 +45,18 @@ pub(super) fn wanted_for_objects(facts: &SceneFacts) -> Result<String, String> {
         return Err("no object is under water".to_owned());
     }
     super::surface::wanted_for_sun(facts)?;
-    Ok(format!("{wet} object{} under water", if wet == 1 { "" } else { "s" }))
+    Ok(format!(
+        "{wet} object{} under water",
+        if wet == 1 { "" } else { "s" }
+    ))
 }
 
 /// The uniform of a level map.
-pub(super) fn view_of(level_box: &LevelBox, arena_offset: u32, first_triangle: u32) -> LevelMapView {
+pub(super) fn view_of(
+    level_box: &LevelBox,
+    arena_offset: u32,
+    first_triangle: u32,
+) -> LevelMapView {
     let row = |r: glam::DVec4| vec4([r.x, r.y, r.z], r.w);
     LevelMapView {
         u_row: row(level_box.map_from_mesh[0]),

@@ -14,7 +14,15 @@ pub const PASS: PassDesc = PassDesc {
     writes: &[Slot::LevelMaps],
     wanted: wanted_for_objects,
     steps: |_, run| {
-        let Run::LevelMap { level_box, arena_offset, first_triangle, .. } = run else { return Vec::new() };
+        let Run::LevelMap {
+            level_box,
+            arena_offset,
+            first_triangle,
+            ..
+        } = run
+        else {
+            return Vec::new();
+        };
         let texels = level_box.key.texels;
         let mut view = view_of(level_box, arena_offset, first_triangle);
         let mut offset = arena_offset;

@@ -54,7 +54,9 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
 
 /// Counts per m² in the energy account of a sun; a power of two, so that scaling is exact.
 pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
-    let all_m2 = largest_beam_m2(facts, &facts.suns[index]) * 2.0 * f64::from(facts.quality.water_cells).powi(2);
+    let all_m2 = largest_beam_m2(facts, &facts.suns[index])
+        * 2.0
+        * f64::from(facts.quality.water_cells).powi(2);
     (2.0_f64.powi(60) / all_m2).log2().floor().exp2()
 }
 
@@ -70,7 +72,12 @@ pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
     let floor_texel_m2 = facts.floor_map.map_or(0.0, |map| {
         sun.to_light.y * map.rect.size().x * map.rect.size().y / f64::from(map.width * map.height)
     });
-    let texel_m2 = sun.boxes.iter().flatten().map(|b| 1.0 / b.density_per_flux).fold(floor_texel_m2, f64::max);
+    let texel_m2 = sun
+        .boxes
+        .iter()
+        .flatten()
+        .map(|b| 1.0 / b.density_per_flux)
+        .fold(floor_texel_m2, f64::max);
     let narrow = WRAP_COUNTS / (NARROW_HEADROOM * texel_m2);
     narrow.min(beam).log2().floor().exp2()
 }
@@ -81,7 +88,11 @@ pub fn has_wrapped(facts: &SceneFacts, index: usize, missing_m2: f64) -> bool {
 }
 
 /// The receivers of one sun: the floor, then the objects; `level_map_offset` tells where in the arena an object's map lies.
-pub fn receivers(facts: &SceneFacts, index: usize, level_map_offset: impl Fn(usize) -> u32) -> Vec<Receiver> {
+pub fn receivers(
+    facts: &SceneFacts,
+    index: usize,
+    level_map_offset: impl Fn(usize) -> u32,
+) -> Vec<Receiver> {
     let mut all = vec![floor_receiver(facts)];
     let texels = slot::object_texels(facts);
     let wet = facts.wet_objects().count() as u32;
@@ -115,7 +126,9 @@ pub fn receivers(facts: &SceneFacts, index: usize, level_map_offset: impl Fn(usi
 }
 
 fn floor_receiver(facts: &SceneFacts) -> Receiver {
-    let Some(floor) = &facts.floor else { return Receiver::default() };
+    let Some(floor) = &facts.floor else {
+        return Receiver::default();
+    };
     let mut receiver = Receiver {
         s_row: [0.0, -1.0, 0.0, floor.y_m as f32],
         s_per_m: 1.0,

@@ -9,7 +9,11 @@ use crate::scene::LayerName;
 pub const PASS: PassDesc = PassDesc {
     name: "shade",
     repeat: Repeat::Band,
-    reads: &[Slot::VisibleAlbedo, Slot::VisibleTransport, Slot::VisibleIrradiance],
+    reads: &[
+        Slot::VisibleAlbedo,
+        Slot::VisibleTransport,
+        Slot::VisibleIrradiance,
+    ],
     reads_if_present: &[],
     writes: &[Slot::Radiance],
     wanted: |facts| {

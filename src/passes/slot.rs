@@ -114,28 +114,105 @@ impl Slot {
     /// Name, content and lifetime.
     pub fn info(self) -> SlotInfo {
         let (name, holds, lifetime) = match self {
-            Self::Waves => ("waves", "amplitude m, frequency turns/m, phase turns", Lifetime::Upload),
-            Self::Geometry => ("geometry", "hierarchy nodes and triangles, m", Lifetime::Upload),
+            Self::Waves => (
+                "waves",
+                "amplitude m, frequency turns/m, phase turns",
+                Lifetime::Upload,
+            ),
+            Self::Geometry => (
+                "geometry",
+                "hierarchy nodes and triangles, m",
+                Lifetime::Upload,
+            ),
             Self::Instances => ("instances", "placement, bounds m, albedo", Lifetime::Upload),
-            Self::Receivers => ("receivers", "map of each receiver for the sun at work", Lifetime::Upload),
-            Self::AllReceivers => ("all_receivers", "map of each receiver for each sun", Lifetime::Upload),
-            Self::LevelMaps => ("level_maps", "front and back depth pyramids, packed normals", Lifetime::Cached),
-            Self::Surface => ("surface", "height m and slope per water vertex", Lifetime::Sun),
-            Self::Beams => ("beams", "refracted direction and transmittance per water vertex", Lifetime::Sun),
-            Self::Hits => ("hits", "map coordinates texels, path m, receiver per water vertex", Lifetime::Sun),
-            Self::SplitQueue => ("split_queue", "beams that straddle receivers", Lifetime::Sun),
-            Self::WideQueue => ("wide_queue", "slices of footprints of many texels", Lifetime::Sun),
-            Self::Flux => ("flux", "64-bit fixed-point flux per texel and channel", Lifetime::Sun),
-            Self::Energy => ("energy", "64-bit fixed-point flux per term of the account", Lifetime::Sun),
+            Self::Receivers => (
+                "receivers",
+                "map of each receiver for the sun at work",
+                Lifetime::Upload,
+            ),
+            Self::AllReceivers => (
+                "all_receivers",
+                "map of each receiver for each sun",
+                Lifetime::Upload,
+            ),
+            Self::LevelMaps => (
+                "level_maps",
+                "front and back depth pyramids, packed normals",
+                Lifetime::Cached,
+            ),
+            Self::Surface => (
+                "surface",
+                "height m and slope per water vertex",
+                Lifetime::Sun,
+            ),
+            Self::Beams => (
+                "beams",
+                "refracted direction and transmittance per water vertex",
+                Lifetime::Sun,
+            ),
+            Self::Hits => (
+                "hits",
+                "map coordinates texels, path m, receiver per water vertex",
+                Lifetime::Sun,
+            ),
+            Self::SplitQueue => (
+                "split_queue",
+                "beams that straddle receivers",
+                Lifetime::Sun,
+            ),
+            Self::WideQueue => (
+                "wide_queue",
+                "slices of footprints of many texels",
+                Lifetime::Sun,
+            ),
+            Self::Flux => (
+                "flux",
+                "64-bit fixed-point flux per texel and channel",
+                Lifetime::Sun,
+            ),
+            Self::Energy => (
+                "energy",
+                "64-bit fixed-point flux per term of the account",
+                Lifetime::Sun,
+            ),
             Self::Irradiance => ("irradiance", "linear RGB per texel, W/m²", Lifetime::Frame),
-            Self::VisiblePosition => ("visible_position", "surface point m and receiver per pixel", Lifetime::Band),
-            Self::VisibleNormal => ("visible_normal", "normal and distance m per pixel", Lifetime::Band),
-            Self::VisibleAlbedo => ("visible_albedo", "reflectance and way under water m per pixel", Lifetime::Band),
-            Self::VisibleTransport => ("visible_transport", "weights of surface and sky per pixel", Lifetime::Band),
-            Self::VisibleIrradiance => ("visible_irradiance", "linear RGB per pixel, W/m²", Lifetime::Band),
-            Self::Radiance => ("radiance", "linear RGB per pixel, W/(m² sr), and 1 where the floor's map was too small", Lifetime::Band),
+            Self::VisiblePosition => (
+                "visible_position",
+                "surface point m and receiver per pixel",
+                Lifetime::Band,
+            ),
+            Self::VisibleNormal => (
+                "visible_normal",
+                "normal and distance m per pixel",
+                Lifetime::Band,
+            ),
+            Self::VisibleAlbedo => (
+                "visible_albedo",
+                "reflectance and way under water m per pixel",
+                Lifetime::Band,
+            ),
+            Self::VisibleTransport => (
+                "visible_transport",
+                "weights of surface and sky per pixel",
+                Lifetime::Band,
+            ),
+            Self::VisibleIrradiance => (
+                "visible_irradiance",
+                "linear RGB per pixel, W/m²",
+                Lifetime::Band,
+            ),
+            Self::Radiance => (
+                "radiance",
+                "linear RGB per pixel, W/(m² sr), and 1 where the floor's map was too small",
+                Lifetime::Band,
+            ),
         };
-        SlotInfo { name, holds, lifetime, is_queue: matches!(self, Self::SplitQueue | Self::WideQueue) }
+        SlotInfo {
+            name,
+            holds,
+            lifetime,
+            is_queue: matches!(self, Self::SplitQueue | Self::WideQueue),
+        }
     }
 
     /// The slot of this name.
@@ -148,7 +225,9 @@ impl Slot {
         let side = u64::from(facts.quality.water_cells) + 1;
         let channels = u64::from(facts.channels());
         let cells = u64::from(facts.quality.water_cells);
-        let pixels = facts.camera.map_or(0, |c| u64::from(c.width) * u64::from(band_rows(c.width, c.height)));
+        let pixels = facts.camera.map_or(0, |c| {
+            u64::from(c.width) * u64::from(band_rows(c.width, c.height))
+        });
         match self {
             Self::Surface | Self::Beams | Self::Hits => 16 * side * side,
             Self::SplitQueue | Self::WideQueue => 4 * (QUEUE_HEAD_WORDS + 2 * cells * cells),
@@ -165,7 +244,9 @@ impl Slot {
             Self::Instances => 112 * facts.objects.len() as u64,
             Self::Receivers => super::light::RECEIVER_BYTES * (1 + facts.objects.len() as u64),
             Self::AllReceivers => {
-                super::light::RECEIVER_BYTES * (1 + facts.objects.len() as u64) * facts.suns.len().max(1) as u64
+                super::light::RECEIVER_BYTES
+                    * (1 + facts.objects.len() as u64)
+                    * facts.suns.len().max(1) as u64
             }
             Self::Geometry => facts.geometry_bytes,
             Self::LevelMaps => 0,
@@ -192,11 +273,14 @@ pub fn flux_texels(facts: &SceneFacts) -> u32 {
 /// Texels of all irradiance maps: one for the floor, one per object and sun.
 pub fn irradiance_texels(facts: &SceneFacts) -> u64 {
     let objects = facts.wet_objects().count() as u64;
-    u64::from(floor_texels(facts)) + u64::from(object_texels(facts)) * objects * facts.suns.len() as u64
+    u64::from(floor_texels(facts))
+        + u64::from(object_texels(facts)) * objects * facts.suns.len() as u64
 }
 
 /// Rows of a picture that are made at once.
 pub fn band_rows(width: u32, height: u32) -> u32 {
     let rows = BAND_BYTES / (16 * u64::from(width.max(1)));
-    u32::try_from(rows).unwrap_or(u32::MAX).clamp(1, height.max(1))
+    u32::try_from(rows)
+        .unwrap_or(u32::MAX)
+        .clamp(1, height.max(1))
 }

@@ -9,7 +9,12 @@ use super::surface::wanted_for_sun;
 pub const PASS: PassDesc = PassDesc {
     name: "split",
     repeat: Repeat::Sun,
-    reads: &[Slot::SplitQueue, Slot::Waves, Slot::Receivers, Slot::LevelMaps],
+    reads: &[
+        Slot::SplitQueue,
+        Slot::Waves,
+        Slot::Receivers,
+        Slot::LevelMaps,
+    ],
     reads_if_present: &[],
     writes: &[Slot::Flux, Slot::Energy],
     wanted: |facts| {
@@ -18,10 +23,15 @@ pub const PASS: PassDesc = PassDesc {
         if wet == 0 {
             return Err("no object is under water: every beam ends on the floor".to_owned());
         }
-        Ok(format!("{wet} object{} may tear beams", if wet == 1 { "" } else { "s" }))
+        Ok(format!(
+            "{wet} object{} may tear beams",
+            if wet == 1 { "" } else { "s" }
+        ))
     },
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else { return Vec::new() };
+        let Run::Sun { index, wide_sums } = run else {
+            return Vec::new();
+        };
         vec![Step {
             entry: "split_main",
             work: Work::Compute(Groups::Queue(Slot::SplitQueue)),

@@ -28,14 +28,24 @@ pub(super) fn wanted_for_sun(facts: &SceneFacts) -> Result<String, String> {
     Ok(format!(
         "{} sun{} into {}",
         facts.suns.len(),
-        if facts.suns.len() == 1 { " shines" } else { "s shine" },
-        if facts.surface.max_slope() == 0.0 { "flat water".to_owned() } else { format!("water with {waves} wave components") },
+        if facts.suns.len() == 1 {
+            " shines"
+        } else {
+            "s shine"
+        },
+        if facts.surface.max_slope() == 0.0 {
+            "flat water".to_owned()
+        } else {
+            format!("water with {waves} wave components")
+        },
     ))
 }
 
 /// One invocation per grid vertex.
 pub(super) fn grid_step(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
-    let Run::Sun { index, wide_sums } = run else { return Vec::new() };
+    let Run::Sun { index, wide_sums } = run else {
+        return Vec::new();
+    };
     let side = facts.quality.water_cells + 1;
     vec![Step {
         entry,

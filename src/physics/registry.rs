@@ -51,7 +51,11 @@ pub struct Twin {
 }
 
 const fn tolerance(absolute: f64, relative: f64, reason: &'static str) -> Tolerance {
-    Tolerance { absolute, relative, reason }
+    Tolerance {
+        absolute,
+        relative,
+        reason,
+    }
 }
 
 const COSINE: Domain = range(0.0, 1.0, &[0.0, 1e-7, 1e-3, 0.5, 0.999_999, 1.0]);
@@ -63,34 +67,60 @@ pub const TWINS: [Twin; 11] = [
     Twin {
         name: "sin_cos_turns",
         file: "lib/turns.wgsl",
-        domain: &[range(-16.0, 16.0, &[0.0, 0.125, 0.25, 0.375, 0.5, 0.75, 1.0, -0.25, -0.5, 15.75])],
+        domain: &[range(
+            -16.0,
+            16.0,
+            &[0.0, 0.125, 0.25, 0.375, 0.5, 0.75, 1.0, -0.25, -0.5, 15.75],
+        )],
         call: "vec4f(sin_cos_turns(a[0]), 0.0, 0.0)",
         original: |a| {
             let (sin, cos) = turns::sin_cos_turns(a[0]);
             Some([sin, cos, 0.0, 0.0])
         },
-        tolerance: tolerance(4e-7, 0.0, "polynomials of 1 ulp plus the rounding of 2π times the reduced turn"),
+        tolerance: tolerance(
+            4e-7,
+            0.0,
+            "polynomials of 1 ulp plus the rounding of 2π times the reduced turn",
+        ),
     },
     Twin {
         name: "fresnel_reflectance",
         file: "lib/fresnel.wgsl",
         domain: &[COSINE, INDEX],
         call: "vec4f(fresnel_reflectance(a[0], a[1]), 0.0, 0.0, 0.0)",
-        original: |a| outside_critical(a).then(|| [fresnel::fresnel_reflectance(a[0], a[1]), 0.0, 0.0, 0.0]),
-        tolerance: tolerance(2e-5, 0.0, "near the critical angle cos θ_t is a root of a rounded difference: √ε · 0.05"),
+        original: |a| {
+            outside_critical(a).then(|| [fresnel::fresnel_reflectance(a[0], a[1]), 0.0, 0.0, 0.0])
+        },
+        tolerance: tolerance(
+            2e-5,
+            0.0,
+            "near the critical angle cos θ_t is a root of a rounded difference: √ε · 0.05",
+        ),
     },
     Twin {
         name: "fresnel_transmittance",
         file: "lib/fresnel.wgsl",
         domain: &[COSINE, INDEX],
         call: "vec4f(fresnel_transmittance(a[0], a[1]), 0.0, 0.0, 0.0)",
-        original: |a| outside_critical(a).then(|| [fresnel::fresnel_transmittance(a[0], a[1]), 0.0, 0.0, 0.0]),
-        tolerance: tolerance(2e-5, 2e-6, "as the reflectance; towards grazing the error is relative"),
+        original: |a| {
+            outside_critical(a).then(|| [fresnel::fresnel_transmittance(a[0], a[1]), 0.0, 0.0, 0.0])
+        },
+        tolerance: tolerance(
+            2e-5,
+            2e-6,
+            "as the reflectance; towards grazing the error is relative",
+        ),
     },
     Twin {
         name: "refract_direction",
         file: "lib/refraction.wgsl",
-        domain: &[COSINE, range(0.0, 1.0, &[0.0, 0.25, 0.5]), PLACE, PLACE, INDEX],
+        domain: &[
+            COSINE,
+            range(0.0, 1.0, &[0.0, 0.25, 0.5]),
+            PLACE,
+            PLACE,
+            INDEX,
+        ],
         call: "refract_direction(incident(a[0], a[1], normal_from_slope(a[2], a[3])), normal_from_slope(a[2], a[3]), a[4])",
         original: |a| {
             if !outside_critical(&[a[0], a[4]]) {
@@ -102,7 +132,11 @@ pub const TWINS: [Twin; 11] = [
                 None => Some([0.0; 4]),
             }
         },
-        tolerance: tolerance(3e-5, 0.0, "near the critical angle as the reflectance; elsewhere rounding of unit vectors"),
+        tolerance: tolerance(
+            3e-5,
+            0.0,
+            "near the critical angle as the reflectance; elsewhere rounding of unit vectors",
+        ),
     },
     Twin {
         name: "reflect_direction",
@@ -119,7 +153,10 @@ pub const TWINS: [Twin; 11] = [
     Twin {
         name: "normal_from_slope",
         file: "lib/refraction.wgsl",
-        domain: &[range(-20.0, 20.0, &[0.0, 1e-8, 20.0]), range(-20.0, 20.0, &[0.0, 1e-8, 20.0])],
+        domain: &[
+            range(-20.0, 20.0, &[0.0, 1e-8, 20.0]),
+            range(-20.0, 20.0, &[0.0, 1e-8, 20.0]),
+        ],
         call: "vec4f(normal_from_slope(a[0], a[1]), 0.0)",
         original: |a| {
             let n = refraction::normal_from_slope(a[0], a[1]);
@@ -130,18 +167,32 @@ pub const TWINS: [Twin; 11] = [
     Twin {
         name: "transmission",
         file: "lib/attenuation.wgsl",
-        domain: &[range(0.0, 8.0, &[0.0, 1e-9, 1e-3]), range(0.0, 8.0, &[0.0, 1e-6])],
+        domain: &[
+            range(0.0, 8.0, &[0.0, 1e-9, 1e-3]),
+            range(0.0, 8.0, &[0.0, 1e-6]),
+        ],
         call: "vec4f(transmission(a[0], a[1]), 0.0, 0.0, 0.0)",
         original: |a| Some([attenuation::transmission(a[0], a[1]), 0.0, 0.0, 0.0]),
-        tolerance: tolerance(1e-6, 1e-5, "WGSL lets exp be 3 + 2|x| ulp off; driver polynomials were seen at 4·10⁻⁶"),
+        tolerance: tolerance(
+            1e-6,
+            1e-5,
+            "WGSL lets exp be 3 + 2|x| ulp off; driver polynomials were seen at 4·10⁻⁶",
+        ),
     },
     Twin {
         name: "extinction",
         file: "lib/attenuation.wgsl",
-        domain: &[range(0.0, 8.0, &[0.0, 1e-9, 1e-3]), range(0.0, 8.0, &[0.0, 1e-6])],
+        domain: &[
+            range(0.0, 8.0, &[0.0, 1e-9, 1e-3]),
+            range(0.0, 8.0, &[0.0, 1e-6]),
+        ],
         call: "vec4f(extinction(a[0], a[1]), 0.0, 0.0, 0.0)",
         original: |a| Some([attenuation::extinction(a[0], a[1]), 0.0, 0.0, 0.0]),
-        tolerance: tolerance(1e-30, 2e-5, "a series below 0.06; there exp's error of 10⁻⁶ is 2·10⁻⁵ of what is left"),
+        tolerance: tolerance(
+            1e-30,
+            2e-5,
+            "a series below 0.06; there exp's error of 10⁻⁶ is 2·10⁻⁵ of what is left",
+        ),
     },
     Twin {
         name: "mean_positive",
@@ -157,14 +208,28 @@ pub const TWINS: [Twin; 11] = [
         domain: &[PLACE, PLACE, range(0.0, 2.0, &[0.0, 1.0])],
         call: "vec4f(mean_clamped(a[0], a[1], a[2]), 0.0, 0.0, 0.0)",
         original: |a| Some([coverage::mean_clamped(a[0], a[1], a[2]), 0.0, 0.0, 0.0]),
-        tolerance: tolerance(1e-6, 1e-6, "six roundings of values up to 2 with quotients below 1"),
+        tolerance: tolerance(
+            1e-6,
+            1e-6,
+            "six roundings of values up to 2 with quotients below 1",
+        ),
     },
     Twin {
         name: "tent_share_below",
         file: "lib/coverage.wgsl",
-        domain: &[range(-0.5, 1.5, &[0.0, 1e-6, 1.0]), range(0.0, 1.0, &[0.0, 0.5, 1.0])],
+        domain: &[
+            range(-0.5, 1.5, &[0.0, 1e-6, 1.0]),
+            range(0.0, 1.0, &[0.0, 0.5, 1.0]),
+        ],
         call: "vec4f(tent_share_below(a[0], 0.0, a[1], 1.0), 0.0, 0.0, 0.0)",
-        original: |a| Some([coverage::tent_share_below(a[0], 0.0, a[1], 1.0), 0.0, 0.0, 0.0]),
+        original: |a| {
+            Some([
+                coverage::tent_share_below(a[0], 0.0, a[1], 1.0),
+                0.0,
+                0.0,
+                0.0,
+            ])
+        },
         tolerance: tolerance(1e-6, 0.0, "five roundings of values up to 1"),
     },
 ];
@@ -182,8 +247,19 @@ pub const SKY_TWIN: Twin = Twin {
         range(-1.0, 1.0, &[-1.0, 0.0, 1.0]),
     ],
     call: "vec4f(sky_irradiance(a[0], a[1], a[2], a[3], a[4], a[5]), 0.0, 0.0, 0.0)",
-    original: |a| Some([sky::sky_irradiance(a[0], a[1], a[2], a[3], a[4], a[5]), 0.0, 0.0, 0.0]),
-    tolerance: tolerance(1e-4, 2e-5, "exp as in transmission, times values up to 314; 1 + n_y cancels near −1"),
+    original: |a| {
+        Some([
+            sky::sky_irradiance(a[0], a[1], a[2], a[3], a[4], a[5]),
+            0.0,
+            0.0,
+            0.0,
+        ])
+    },
+    tolerance: tolerance(
+        1e-4,
+        2e-5,
+        "exp as in transmission, times values up to 314; 1 + n_y cancels near −1",
+    ),
 };
 
 /// All twins, the sky's included.
@@ -205,7 +281,11 @@ fn incident(cos_i: f32, turns: f32, normal: vec3f) -> vec3f {
 
 /// The same in f64.
 fn incident(cos_i: f64, turns: f64, normal: DVec3) -> DVec3 {
-    let helper = if normal.x.abs() > 0.5 { DVec3::Y } else { DVec3::X };
+    let helper = if normal.x.abs() > 0.5 {
+        DVec3::Y
+    } else {
+        DVec3::X
+    };
     let u = normal.cross(helper).normalize();
     let v = normal.cross(u);
     let (sin, cos) = turns::sin_cos_turns(turns);

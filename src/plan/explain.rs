@@ -13,14 +13,22 @@ pub fn human_bytes(bytes: u64) -> String {
         value /= 1024.0;
         unit += 1;
     }
-    if unit == 0 { format!("{bytes} B") } else { format!("{value:.1} {}", UNITS[unit]) }
+    if unit == 0 {
+        format!("{bytes} B")
+    } else {
+        format!("{value:.1} {}", UNITS[unit])
+    }
 }
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "passes")?;
         for pass in &self.passes {
-            let times = if pass.runs == 1 { String::new() } else { format!(" × {}", pass.runs) };
+            let times = if pass.runs == 1 {
+                String::new()
+            } else {
+                format!(" × {}", pass.runs)
+            };
             writeln!(f, "  {}{times}: {}", pass.name, pass.reason)?;
         }
         if self.passes.is_empty() {
@@ -32,10 +40,21 @@ impl fmt::Display for Plan {
         }
         writeln!(f, "memory, {} at its peak", human_bytes(self.peak_bytes))?;
         for slot in &self.slots {
-            writeln!(f, "  {}: {} ({})", slot.name, human_bytes(slot.bytes), slot.holds)?;
+            writeln!(
+                f,
+                "  {}: {} ({})",
+                slot.name,
+                human_bytes(slot.bytes),
+                slot.holds
+            )?;
         }
         for warning in &self.warnings {
-            writeln!(f, "warning: {}: {}", warning.pointer.as_deref().unwrap_or(&warning.code), warning.message)?;
+            writeln!(
+                f,
+                "warning: {}: {}",
+                warning.pointer.as_deref().unwrap_or(&warning.code),
+                warning.message
+            )?;
         }
         Ok(())
     }

@@ -104,9 +104,16 @@ pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
 }
 
 /// Plans `facts` from `passes` (usually [`passes::ALL`]).
-pub fn plan(passes: &[&PassDesc], facts: &SceneFacts, cached: &dyn Cached) -> Result<Plan, PlanError> {
+pub fn plan(
+    passes: &[&PassDesc],
+    facts: &SceneFacts,
+    cached: &dyn Cached,
+) -> Result<Plan, PlanError> {
     let mut awaiting = awaited(facts);
-    let missing = level_maps(facts).iter().filter(|key| !cached.has_level_map(key)).count();
+    let missing = level_maps(facts)
+        .iter()
+        .filter(|key| !cached.has_level_map(key))
+        .count();
     let mut kept: Vec<(&PassDesc, String)> = Vec::new();
     let mut absent = Vec::new();
     for pass in passes.iter().rev() {
@@ -116,7 +123,10 @@ pub fn plan(passes: &[&PassDesc], facts: &SceneFacts, cached: &dyn Cached) -> Re
                 awaiting.extend(pass.reads.iter().chain(pass.reads_if_present));
                 kept.push((pass, reason));
             }
-            Err(reason) => absent.push(AbsentPass { name: pass.name.to_owned(), reason }),
+            Err(reason) => absent.push(AbsentPass {
+                name: pass.name.to_owned(),
+                reason,
+            }),
         }
     }
     kept.reverse();
@@ -154,20 +164,32 @@ fn verdict(
         return Ok(reason);
     }
     let writes: Vec<&str> = pass.writes.iter().map(|slot| slot.info().name).collect();
-    Err(format!("nothing in this frame reads what it writes ({})", writes.join(", ")))
+    Err(format!(
+        "nothing in this frame reads what it writes ({})",
+        writes.join(", ")
+    ))
 }
 
 /// Work inside passes that a scene does not call for.
 fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     let mut absent = Vec::new();
     let mut add = |name: &str, reason: &str| {
-        absent.push(AbsentPass { name: name.to_owned(), reason: reason.to_owned() });
+        absent.push(AbsentPass {
+            name: name.to_owned(),
+            reason: reason.to_owned(),
+        });
     };
     if !facts.attenuates() {
-        add("attenuation", "water.absorption_per_m and water.scattering_per_m are zero");
+        add(
+            "attenuation",
+            "water.absorption_per_m and water.scattering_per_m are zero",
+        );
     }
     if facts.channels() == 1 {
-        add("spectral_flux", "all colour channels fade alike: one is carried for all");
+        add(
+            "spectral_flux",
+            "all colour channels fade alike: one is carried for all",
+        );
     }
     if facts.sky_radiance.iter().all(|&l| l == 0.0) {
         add("sky", "no sky shines");
@@ -181,30 +203,46 @@ fn runs(repeat: Repeat, facts: &SceneFacts, missing: usize) -> u32 {
     match repeat {
         Repeat::LevelMap => u32::try_from(missing).unwrap_or(u32::MAX),
         Repeat::Sun => u32::try_from(facts.suns.len()).unwrap_or(u32::MAX),
-        Repeat::Band => facts.camera.map_or(0, |c| c.height.div_ceil(slot::band_rows(c.width, c.height))),
+        Repeat::Band => facts
+            .camera
+            .map_or(0, |c| c.height.div_ceil(slot::band_rows(c.width, c.height))),
     }
 }
 
 /// Every slot that is read must be an upload, cached, or written before.
 fn check_order(kept: &[(&PassDesc, String)], level_maps_cached: bool) -> Result<(), PlanError> {
-    let mut there: BTreeSet<Slot> =
-        slot::SLOTS.into_iter().filter(|s| s.info().lifetime == slot::Lifetime::Upload).collect();
+    let mut there: BTreeSet<Slot> = slot::SLOTS
+        .into_iter()
+        .filter(|s| s.info().lifetime == slot::Lifetime::Upload)
+        .collect();
     if level_maps_cached {
         there.insert(Slot::LevelMaps);
     }
     for (pass, _) in kept {
         if let Some(missing) = pass.reads.iter().find(|slot| !there.contains(slot)) {
-            return Err(PlanError::NothingWrites { pass: pass.name, slot: missing.info().name });
+            return Err(PlanError::NothingWrites {
+                pass: pass.name,
+                slot: missing.info().name,
+            });
         }
         there.extend(pass.writes);
     }
     Ok(())
 }
 
-fn slots(facts: &SceneFacts, kept: &[(&PassDesc, String)], cached: &dyn Cached) -> Vec<PlannedSlot> {
+fn slots(
+    facts: &SceneFacts,
+    kept: &[(&PassDesc, String)],
+    cached: &dyn Cached,
+) -> Vec<PlannedSlot> {
     let used: BTreeSet<Slot> = kept
         .iter()
-        .flat_map(|(pass, _)| pass.reads.iter().chain(pass.writes).chain(pass.reads_if_present))
+        .flat_map(|(pass, _)| {
+            pass.reads
+                .iter()
+                .chain(pass.writes)
+                .chain(pass.reads_if_present)
+        })
         .copied()
         .collect();
     let wanted: u64 = level_maps(facts).iter().map(|key| key.bytes()).sum();
@@ -215,7 +253,11 @@ fn slots(facts: &SceneFacts, kept: &[(&PassDesc, String)], cached: &dyn Cached) 
                 Slot::LevelMaps => cached.arena_bytes(wanted),
                 _ => slot.bytes(facts),
             };
-            PlannedSlot { name: info.name.to_owned(), bytes: bytes.max(16), holds: info.holds.to_owned() }
+            PlannedSlot {
+                name: info.name.to_owned(),
+                bytes: bytes.max(16),
+                holds: info.holds.to_owned(),
+            }
         })
         .collect()
 }

@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use super::RenderError;
 use crate::frame::Layer;
-use crate::passes::slot::{self, ENERGY_TERMS, Slot};
 use crate::passes::light;
+use crate::passes::slot::{self, ENERGY_TERMS, Slot};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
 use crate::scene::{LayerName, Receiver};
@@ -29,7 +29,12 @@ pub(super) mod term {
 pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Vec<Warning>) {
     let mut accounts = Vec::new();
     let mut warnings = Vec::new();
-    for (index, (sun, terms)) in facts.suns.iter().zip(raw.chunks_exact(ENERGY_TERMS as usize)).enumerate() {
+    for (index, (sun, terms)) in facts
+        .suns
+        .iter()
+        .zip(raw.chunks_exact(ENERGY_TERMS as usize))
+        .enumerate()
+    {
         let per_count = 1.0 / light::energy_scale(facts, index);
         let grey = |t: usize| sun.irradiance_w_m2.map(|e| terms[t] as f64 * per_count * e);
         let spectral = |t: usize| -> [f64; 3] {
@@ -41,7 +46,11 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
         let lost = spectral(term::EXTINGUISHED);
         let absorbed_share: [f64; 3] = std::array::from_fn(|c| {
             let extinction = facts.extinction_per_m[c];
-            if extinction > 0.0 { facts.absorption_per_m[c] / extinction } else { 1.0 }
+            if extinction > 0.0 {
+                facts.absorption_per_m[c] / extinction
+            } else {
+                1.0
+            }
         });
         let mut account = EnergyAccount {
             light: sun.light,
@@ -60,7 +69,8 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
                 "beams_torn",
                 format!(
                     "{} beams of light {} still straddle receivers after quality.split_levels halvings; each corner took a third",
-                    terms[term::TORN_COUNT], sun.light
+                    terms[term::TORN_COUNT],
+                    sun.light
                 ),
             );
             warning.flux_w = Some(grey(term::TORN));
@@ -73,9 +83,15 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
 
 /// Flux of a sun under unit irradiance that is in no term of its raw account, m²; the largest of the channels.
 pub(super) fn missing_m2(facts: &SceneFacts, index: usize, terms: &[u64]) -> f64 {
-    let grey = terms[term::EMITTED] as f64 - terms[term::REFLECTED] as f64 - terms[term::MISSED] as f64;
+    let grey =
+        terms[term::EMITTED] as f64 - terms[term::REFLECTED] as f64 - terms[term::MISSED] as f64;
     let missing = (0..facts.channels() as usize)
-        .map(|c| grey - [term::EXTINGUISHED, term::LEFT, term::LANDED].map(|t| terms[t + c] as f64).iter().sum::<f64>())
+        .map(|c| {
+            grey - [term::EXTINGUISHED, term::LEFT, term::LANDED]
+                .map(|t| terms[t + c] as f64)
+                .iter()
+                .sum::<f64>()
+        })
         .fold(f64::MIN, f64::max);
     missing / light::energy_scale(facts, index)
 }
@@ -115,10 +131,21 @@ impl<'a> ViewLayers<'a> {
                     LayerName::Depth => 1,
                     _ => 3,
                 };
-                (name, Layer { channels, data: vec![0.0; pixels * channels] })
+                (
+                    name,
+                    Layer {
+                        channels,
+                        data: vec![0.0; pixels * channels],
+                    },
+                )
             })
             .collect();
-        Self { facts, width, layers, outside_map: 0 }
+        Self {
+            facts,
+            width,
+            layers,
+            outside_map: 0,
+        }
     }
 
     /// Copies a band of a slot into the layers that come from it.
@@ -136,10 +163,14 @@ impl<'a> ViewLayers<'a> {
         match source {
             Slot::Radiance => {
                 self.outside_map += band.iter().filter(|v| v[3] != 0.0).count() as u64;
-                fill(self.layers.get_mut(&LayerName::Radiance), &|v| [v[0], v[1], v[2], 1.0]);
+                fill(self.layers.get_mut(&LayerName::Radiance), &|v| {
+                    [v[0], v[1], v[2], 1.0]
+                });
             }
             Slot::VisibleNormal => {
-                fill(self.layers.get_mut(&LayerName::Depth), &|v| [v[3], 0.0, 0.0, 0.0]);
+                fill(self.layers.get_mut(&LayerName::Depth), &|v| {
+                    [v[3], 0.0, 0.0, 0.0]
+                });
                 fill(self.layers.get_mut(&LayerName::Normal), &|v| *v);
             }
             Slot::VisiblePosition => {
@@ -147,7 +178,8 @@ impl<'a> ViewLayers<'a> {
                     if v[3] < 0.0 {
                         return [0.0; 4];
                     }
-                    let world = DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2])) + origin;
+                    let world =
+                        DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2])) + origin;
                     [world.x as f32, world.y as f32, world.z as f32, 0.0]
                 });
             }
@@ -166,7 +198,10 @@ impl<'a> ViewLayers<'a> {
         if self.outside_map > 0 {
             warnings.push(Warning::new(
                 "pixels_outside_map",
-                format!("{} pixels see the floor beside its irradiance map; they repeat its edge", self.outside_map),
+                format!(
+                    "{} pixels see the floor beside its irradiance map; they repeat its edge",
+                    self.outside_map
+                ),
             ));
         }
         Ok((self.layers, warnings))
@@ -201,18 +236,34 @@ pub(super) struct MapPlace {
 pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
     if let Some(Receiver::Object(index)) = facts.map_receiver {
         let texels = facts.quality.level_map_texels;
-        let nth_wet = facts.wet_objects().position(|o| o == index as usize).unwrap_or(0) as u64;
-        let found = facts.suns.first().and_then(|sun| sun.boxes.get(index as usize)).and_then(Option::as_ref);
+        let nth_wet = facts
+            .wet_objects()
+            .position(|o| o == index as usize)
+            .unwrap_or(0) as u64;
+        let found = facts
+            .suns
+            .first()
+            .and_then(|sun| sun.boxes.get(index as usize))
+            .and_then(Option::as_ref);
         return MapPlace {
             width: texels,
             height: texels,
-            first_texel: u64::from(slot::floor_texels(facts)) + nth_wet * u64::from(slot::object_texels(facts)),
+            first_texel: u64::from(slot::floor_texels(facts))
+                + nth_wet * u64::from(slot::object_texels(facts)),
             level_map: found.map(|b| b.key.clone()),
             axis_in_mesh: found.map_or(DVec3::Y, |b| b.axis),
         };
     }
-    let (width, height) = facts.floor_map.map_or((0, 0), |map| (map.width, map.height));
-    MapPlace { width, height, first_texel: 0, level_map: None, axis_in_mesh: DVec3::Y }
+    let (width, height) = facts
+        .floor_map
+        .map_or((0, 0), |map| (map.width, map.height));
+    MapPlace {
+        width,
+        height,
+        first_texel: 0,
+        level_map: None,
+        axis_in_mesh: DVec3::Y,
+    }
 }
 
 /// The finished map: on an object the cosine between surface and map axis comes in, on the floor the sky if asked for.
@@ -223,7 +274,11 @@ pub(super) fn finish_map(
     normals: Option<&[u32]>,
 ) -> Result<Layer, RenderError> {
     if let (Some(normals), Some(Receiver::Object(index))) = (normals, facts.map_receiver) {
-        let normal_to_local = facts.objects[index as usize].local_from_mesh.matrix3.inverse().transpose();
+        let normal_to_local = facts.objects[index as usize]
+            .local_from_mesh
+            .matrix3
+            .inverse()
+            .transpose();
         for (texel, &packed) in values.chunks_exact_mut(3).zip(normals) {
             let n = (normal_to_local * unpack_normal(packed)).normalize();
             let cosine = n.dot(map.axis_in_mesh).abs() as f32;
@@ -237,7 +292,10 @@ pub(super) fn finish_map(
             *value += sky as f32;
         }
     }
-    let layer = Layer { channels: 3, data: values };
+    let layer = Layer {
+        channels: 3,
+        data: values,
+    };
     check_finite(LayerName::Irradiance, &layer, map.width)?;
     Ok(layer)
 }

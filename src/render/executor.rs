@@ -38,6 +38,22 @@ impl FrameBuffers {
     }
 }
 
+/// When the recording of a submission began.
+#[derive(Clone, Copy)]
+struct Recording {
+    at: Instant,
+    gpu_ms: f64,
+}
+
+impl Recording {
+    fn start(time_ms: &TimeStats) -> Self {
+        Self {
+            at: Instant::now(),
+            gpu_ms: time_ms.gpu,
+        }
+    }
+}
+
 /// Textures a level map is drawn into before it goes to the arena.
 struct DrawTargets {
     front: wgpu::TextureView,
@@ -61,7 +77,12 @@ impl Renderer {
         let peak_bytes = self.pool.peak_bytes()
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
             + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes);
-        let FrameBuffers { by_name, empty, queue_heads, indirect } = buffers;
+        let FrameBuffers {
+            by_name,
+            empty,
+            queue_heads,
+            indirect,
+        } = buffers;
         for (name, buffer) in by_name {
             if name != slot_name(Slot::Geometry) && name != slot_name(Slot::LevelMaps) {
                 self.pool.give_back(buffer);
@@ -87,7 +108,9 @@ impl Renderer {
         let device = self.gpu.device.clone();
         let mut by_name = BTreeMap::new();
         for planned in &plan.slots {
-            let Some(slot) = Slot::by_name(&planned.name) else { continue };
+            let Some(slot) = Slot::by_name(&planned.name) else {
+                continue;
+            };
             match slot {
                 Slot::Geometry => {
                     if let Some(buffer) = self.geometry_buffer(resolved) {
@@ -101,21 +124,31 @@ impl Renderer {
                 }
                 _ => {
                     let usage = U::STORAGE | U::COPY_DST | U::COPY_SRC;
-                    let buffer = self.pool.lend(&device, slot_name(slot), planned.bytes, usage);
+                    let buffer = self
+                        .pool
+                        .lend(&device, slot_name(slot), planned.bytes, usage);
                     by_name.insert(slot_name(slot), buffer);
                 }
             }
         }
-        let queue_heads = self.pool.lend(&device, "queue heads", 32, U::COPY_SRC | U::COPY_DST);
+        let queue_heads = self
+            .pool
+            .lend(&device, "queue heads", 32, U::COPY_SRC | U::COPY_DST);
         let heads: [[u32; 4]; 2] = [[0, 1, 1, 0], [0, WIDE_GROUPS, 1, 0]];
-        self.gpu.queue.write_buffer(&queue_heads, 0, bytemuck::cast_slice(&heads));
-        let empty = self.pool.lend(&device, "empty list", 256, U::STORAGE | U::COPY_DST);
+        self.gpu
+            .queue
+            .write_buffer(&queue_heads, 0, bytemuck::cast_slice(&heads));
+        let empty = self
+            .pool
+            .lend(&device, "empty list", 256, U::STORAGE | U::COPY_DST);
         self.gpu.queue.write_buffer(&empty, 0, &[0; 256]);
         let buffers = FrameBuffers {
             by_name,
             empty,
             queue_heads,
-            indirect: self.pool.lend(&device, "indirect", 12, U::INDIRECT | U::COPY_DST),
+            indirect: self
+                .pool
+                .lend(&device, "indirect", 12, U::INDIRECT | U::COPY_DST),
         };
         self.upload(facts, &buffers);
         self.gpu.check()?;
@@ -144,17 +177,24 @@ impl Renderer {
         write(Slot::Waves, bytemuck::cast_slice(&waves));
         if let Some(geometry) = &self.geometry {
             if buffers.by_name.contains_key(slot_name(Slot::Instances)) {
-                write(Slot::Instances, bytemuck::cast_slice(&geometry.instances(facts)));
+                write(
+                    Slot::Instances,
+                    bytemuck::cast_slice(&geometry.instances(facts)),
+                );
             }
         }
-        let all: Vec<Receiver> = (0..facts.suns.len()).flat_map(|sun| self.receivers(facts, sun)).collect();
+        let all: Vec<Receiver> = (0..facts.suns.len())
+            .flat_map(|sun| self.receivers(facts, sun))
+            .collect();
         write(Slot::AllReceivers, bytemuck::cast_slice(&all));
     }
 
     fn receivers(&self, facts: &SceneFacts, sun: usize) -> Vec<Receiver> {
         light::receivers(facts, sun, |object| {
             let key = facts.suns[sun].boxes[object].as_ref().map(|b| &b.key);
-            let offset = key.and_then(|key| self.level_maps.offset(key)).unwrap_or_default();
+            let offset = key
+                .and_then(|key| self.level_maps.offset(key))
+                .unwrap_or_default();
             u32::try_from(offset / 4).unwrap_or(u32::MAX)
         })
     }
@@ -163,7 +203,11 @@ impl Renderer {
         if resolved.meshes.is_empty() {
             return None;
         }
-        if !self.geometry.as_ref().is_some_and(|g| g.holds(&resolved.meshes)) {
+        if !self
+            .geometry
+            .as_ref()
+            .is_some_and(|g| g.holds(&resolved.meshes))
+        {
             self.geometry = Some(geometry::Geometry::upload(&self.gpu, &resolved.meshes));
         }
         self.geometry.as_ref().map(|g| g.buffer.clone())
@@ -192,14 +236,25 @@ impl Renderer {
         cancel: &CancellationToken,
     ) -> Result<RunResult, RenderError> {
         let mut time_ms = TimeStats::default();
-        let kept: Vec<&'static PassDesc> =
-            passes::ALL.into_iter().filter(|pass| plan.passes.iter().any(|p| p.name == pass.name)).collect();
-        let of = |repeat: Repeat| kept.iter().copied().filter(move |pass| pass.repeat == repeat).collect::<Vec<_>>();
+        let kept: Vec<&'static PassDesc> = passes::ALL
+            .into_iter()
+            .filter(|pass| plan.passes.iter().any(|p| p.name == pass.name))
+            .collect();
+        let of = |repeat: Repeat| {
+            kept.iter()
+                .copied()
+                .filter(move |pass| pass.repeat == repeat)
+                .collect::<Vec<_>>()
+        };
         if !of(Repeat::LevelMap).is_empty() {
             self.build_level_maps(facts, &of(Repeat::LevelMap), missing, buffers, &mut time_ms)?;
         }
         let mut accounts = Vec::new();
-        for sun in 0..if of(Repeat::Sun).is_empty() { 0 } else { facts.suns.len() } {
+        for sun in 0..if of(Repeat::Sun).is_empty() {
+            0
+        } else {
+            facts.suns.len()
+        } {
             check_cancelled(cancel)?;
             accounts.extend(self.run_sun(facts, sun, &of(Repeat::Sun), buffers, &mut time_ms)?);
         }
@@ -214,7 +269,15 @@ impl Renderer {
             peak_bytes: 0,
         };
         if let Some(camera) = facts.camera {
-            self.run_bands(facts, camera.width, camera.height, &of(Repeat::Band), buffers, cancel, &mut result)?;
+            self.run_bands(
+                facts,
+                camera.width,
+                camera.height,
+                &of(Repeat::Band),
+                buffers,
+                cancel,
+                &mut result,
+            )?;
         } else {
             let started = Instant::now();
             self.collect_map(facts, buffers, &mut result)?;
@@ -232,32 +295,58 @@ impl Renderer {
         buffers: &FrameBuffers,
         time_ms: &mut TimeStats,
     ) -> Result<Vec<u64>, RenderError> {
-        let Some(energy) = buffers.by_name.get(slot_name(Slot::Energy)) else { return Ok(Vec::new()) };
+        let Some(energy) = buffers.by_name.get(slot_name(Slot::Energy)) else {
+            return Ok(Vec::new());
+        };
         let mut account = Vec::new();
         for wide_sums in [false, true] {
-            let started = Instant::now();
+            let started = Recording::start(time_ms);
             if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
-                self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.receivers(facts, index)));
+                self.gpu.queue.write_buffer(
+                    buffer,
+                    0,
+                    bytemuck::cast_slice(&self.receivers(facts, index)),
+                );
             }
             let mut encoder = self.encoder("sun's flux");
             clear_for_sun(&mut encoder, buffers);
-            let (sums, rest): (Vec<&'static PassDesc>, Vec<&'static PassDesc>) =
-                passes.iter().copied().partition(|pass| !pass.writes.contains(&Slot::Irradiance));
+            let (sums, rest): (Vec<&'static PassDesc>, Vec<&'static PassDesc>) = passes
+                .iter()
+                .copied()
+                .partition(|pass| !pass.writes.contains(&Slot::Irradiance));
             for pass in sums {
-                self.record(&mut encoder, pass, facts, Run::Sun { index, wide_sums }, buffers, None)?;
+                self.record(
+                    &mut encoder,
+                    pass,
+                    facts,
+                    Run::Sun { index, wide_sums },
+                    buffers,
+                    None,
+                )?;
+                self.submit_if_timed(pass, &mut encoder, time_ms)?;
             }
             self.submit(encoder, started, time_ms)?;
             let started = Instant::now();
             account = readback::read(&self.gpu, energy, ACCOUNT_BYTES)?;
             time_ms.readback += ms_since(started);
-            if !wide_sums && light::has_wrapped(facts, index, collect::missing_m2(facts, index, &account)) {
+            if !wide_sums
+                && light::has_wrapped(facts, index, collect::missing_m2(facts, index, &account))
+            {
                 continue;
             }
             // Only sums that are known to be whole join the maps.
-            let started = Instant::now();
+            let started = Recording::start(time_ms);
             let mut encoder = self.encoder("sun's maps");
             for pass in rest {
-                self.record(&mut encoder, pass, facts, Run::Sun { index, wide_sums }, buffers, None)?;
+                self.record(
+                    &mut encoder,
+                    pass,
+                    facts,
+                    Run::Sun { index, wide_sums },
+                    buffers,
+                    None,
+                )?;
+                self.submit_if_timed(pass, &mut encoder, time_ms)?;
             }
             self.submit(encoder, started, time_ms)?;
             break;
@@ -265,7 +354,10 @@ impl Renderer {
         Ok(account)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one call site; a struct would only rename them"
+    )]
     fn run_bands(
         &mut self,
         facts: &SceneFacts,
@@ -281,17 +373,26 @@ impl Renderer {
         let step = band_rows(width, height);
         for first_row in (0..height).step_by(step as usize) {
             check_cancelled(cancel)?;
-            let started = Instant::now();
+            let started = Recording::start(&result.time_ms);
             let rows = step.min(height - first_row);
             let mut encoder = self.encoder("band");
             for pass in passes {
-                self.record(&mut encoder, pass, facts, Run::Band { first_row, rows }, buffers, None)?;
+                self.record(
+                    &mut encoder,
+                    pass,
+                    facts,
+                    Run::Band { first_row, rows },
+                    buffers,
+                    None,
+                )?;
+                self.submit_if_timed(pass, &mut encoder, &mut result.time_ms)?;
             }
             self.submit(encoder, started, &mut result.time_ms)?;
             let started = Instant::now();
             for slot in plan::awaited(facts) {
                 let pixels = u64::from(width) * u64::from(rows);
-                let band: Vec<[f32; 4]> = readback::read(&self.gpu, buffers.get(slot_name(slot)), 16 * pixels)?;
+                let band: Vec<[f32; 4]> =
+                    readback::read(&self.gpu, buffers.get(slot_name(slot)), 16 * pixels)?;
                 view.add_band(slot, first_row, &band);
             }
             result.time_ms.readback += ms_since(started);
@@ -313,7 +414,8 @@ impl Renderer {
         let texels = map.width as usize * map.height as usize;
         let mut values = vec![0.0_f32; 3 * texels];
         if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Irradiance)) {
-            let all: Vec<f32> = readback::read(&self.gpu, buffer, 12 * (map.first_texel + texels as u64))?;
+            let all: Vec<f32> =
+                readback::read(&self.gpu, buffer, 12 * (map.first_texel + texels as u64))?;
             values.copy_from_slice(&all[3 * map.first_texel as usize..][..3 * texels]);
         }
         let mut cosines = None;
@@ -324,12 +426,19 @@ impl Renderer {
             }
         }
         let layer = collect::finish_map(facts, &map, values, cosines.as_deref())?;
-        result.layers.insert(crate::scene::LayerName::Irradiance, layer);
+        result
+            .layers
+            .insert(crate::scene::LayerName::Irradiance, layer);
         Ok(())
     }
 
     /// Packed normals of a level map.
-    fn read_normals(&self, arena: &wgpu::Buffer, offset: u64, key: &LevelMapKey) -> Result<Vec<u32>, GpuError> {
+    fn read_normals(
+        &self,
+        arena: &wgpu::Buffer,
+        offset: u64,
+        key: &LevelMapKey,
+    ) -> Result<Vec<u32>, GpuError> {
         let bytes = 4 * u64::from(key.texels) * u64::from(key.texels);
         let staging = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("normals"),
@@ -352,8 +461,12 @@ impl Renderer {
         time_ms: &mut TimeStats,
     ) -> Result<(), RenderError> {
         for key in missing {
-            let started = Instant::now();
-            let found = facts.suns.iter().flat_map(|sun| sun.boxes.iter().flatten()).find(|b| &b.key == key);
+            let started = Recording::start(time_ms);
+            let found = facts
+                .suns
+                .iter()
+                .flat_map(|sun| sun.boxes.iter().flatten())
+                .find(|b| &b.key == key);
             let (Some(level_box), Some(offset), Some(geometry)) =
                 (found, self.level_maps.offset(key), self.geometry.as_ref())
             else {
@@ -370,6 +483,7 @@ impl Renderer {
             let mut encoder = self.encoder("level map");
             for pass in passes {
                 self.record(&mut encoder, pass, facts, run, buffers, Some(&targets))?;
+                self.submit_if_timed(pass, &mut encoder, time_ms)?;
             }
             self.submit(encoder, started, time_ms)?;
         }
@@ -382,12 +496,17 @@ impl Renderer {
                 .device
                 .create_texture(&wgpu::TextureDescriptor {
                     label: Some(label),
-                    size: wgpu::Extent3d { width: texels, height: texels, depth_or_array_layers: 1 },
+                    size: wgpu::Extent3d {
+                        width: texels,
+                        height: texels,
+                        depth_or_array_layers: 1,
+                    },
                     mip_level_count: 1,
                     sample_count: 1,
                     dimension: wgpu::TextureDimension::D2,
                     format,
-                    usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                    usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                        | wgpu::TextureUsages::TEXTURE_BINDING,
                     view_formats: &[],
                 })
                 .create_view(&wgpu::TextureViewDescriptor::default())
@@ -402,21 +521,44 @@ impl Renderer {
     }
 
     fn encoder(&self, label: &str) -> wgpu::CommandEncoder {
-        self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
+        self.gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
     }
 
     fn submit(
         &self,
         encoder: wgpu::CommandEncoder,
-        started: Instant,
+        started: Recording,
         time_ms: &mut TimeStats,
     ) -> Result<(), GpuError> {
         let commands = encoder.finish();
-        time_ms.upload += ms_since(started);
+        // Passes that the host timed on the way are GPU time, not recording.
+        time_ms.upload += ms_since(started.at) - (time_ms.gpu - started.gpu_ms);
         let submitted = Instant::now();
         self.gpu.queue.submit([commands]);
         self.gpu.wait()?;
         time_ms.gpu += ms_since(submitted);
+        Ok(())
+    }
+
+    /// Where the host times passes: submits what is recorded, waits, and starts over with an empty encoder.
+    fn submit_if_timed(
+        &mut self,
+        pass: &'static PassDesc,
+        encoder: &mut wgpu::CommandEncoder,
+        time_ms: &mut TimeStats,
+    ) -> Result<(), GpuError> {
+        if !self.timing.by_host() {
+            return Ok(());
+        }
+        let recorded = std::mem::replace(encoder, self.encoder("timed pass"));
+        let submitted = Instant::now();
+        self.gpu.queue.submit([recorded.finish()]);
+        self.gpu.wait()?;
+        let ms = ms_since(submitted);
+        time_ms.gpu += ms;
+        self.timing.note(pass.name, ms);
         Ok(())
     }
 
@@ -429,10 +571,24 @@ impl Renderer {
         buffers: &FrameBuffers,
         targets: Option<&DrawTargets>,
     ) -> Result<(), GpuError> {
-        let wide_sums = matches!(run, Run::Sun { wide_sums: true, .. });
+        let wide_sums = matches!(
+            run,
+            Run::Sun {
+                wide_sums: true,
+                ..
+            }
+        );
         for step in (pass.steps)(facts, run) {
             match step.work {
-                Work::Compute(groups) => self.dispatch(encoder, pass, facts, &step, (groups, wide_sums), buffers, targets)?,
+                Work::Compute(groups) => self.dispatch(
+                    encoder,
+                    pass,
+                    facts,
+                    &step,
+                    (groups, wide_sums),
+                    buffers,
+                    targets,
+                )?,
                 Work::DrawLevelMap { back, vertices } => {
                     if let Some(targets) = targets {
                         self.draw(encoder, pass, &step, (back, vertices), buffers, targets)?;
@@ -443,7 +599,10 @@ impl Renderer {
         Ok(())
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one call site; a struct would only rename them")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one call site; a struct would only rename them"
+    )]
     fn dispatch(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -458,7 +617,10 @@ impl Renderer {
         if !self.kernels.contains_key(&key) {
             let path = format!("passes/{}.wgsl", pass.name);
             let switch = |on: bool| f64::from(u8::from(on));
-            let constants = [("ATTENUATES", switch(facts.attenuates())), ("WIDE_SUMS", switch(wide_sums))];
+            let constants = [
+                ("ATTENUATES", switch(facts.attenuates())),
+                ("WIDE_SUMS", switch(wide_sums)),
+            ];
             let kernel = Kernel::new(&self.gpu, &self.sources, &path, step.entry, &constants)?;
             self.kernels.insert(key, kernel);
         }
@@ -468,10 +630,18 @@ impl Renderer {
             "front_depth" => targets.map(|t| Binding::Texture(&t.front)),
             "back_depth" => targets.map(|t| Binding::Texture(&t.back)),
             "front_normal" => targets.map(|t| Binding::Texture(&t.normal)),
-            _ => Some(Binding::Buffer(uniforms.get(name).unwrap_or_else(|| buffers.get(name)))),
+            _ => Some(Binding::Buffer(
+                uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
+            )),
         })?;
         if let Groups::Queue(slot) = groups {
-            encoder.copy_buffer_to_buffer(buffers.get(slot_name(slot)), 0, &buffers.indirect, 0, 12);
+            encoder.copy_buffer_to_buffer(
+                buffers.get(slot_name(slot)),
+                0,
+                &buffers.indirect,
+                0,
+                12,
+            );
         }
         let timestamp_writes = self.timing.span(pass.name).map(|(query_set, begin, end)| {
             wgpu::ComputePassTimestampWrites {
@@ -480,8 +650,10 @@ impl Renderer {
                 end_of_pass_write_index: Some(end),
             }
         });
-        let mut compute =
-            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(step.entry), timestamp_writes });
+        let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(step.entry),
+            timestamp_writes,
+        });
         compute.set_pipeline(kernel.pipeline());
         compute.set_bind_group(0, &group, &[]);
         match groups {
@@ -509,23 +681,41 @@ impl Renderer {
                 &RasterTargets {
                     colors: &[wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint],
                     depth: wgpu::TextureFormat::Depth32Float,
-                    depth_compare: if back { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less },
+                    depth_compare: if back {
+                        wgpu::CompareFunction::Greater
+                    } else {
+                        wgpu::CompareFunction::Less
+                    },
                 },
             )?;
             self.raster_kernels.insert(back, kernel);
         }
         let kernel = &self.raster_kernels[&back];
         let uniforms = self.uniform_buffers(step);
-        let group = kernel
-            .bind(&self.gpu, |name| Some(Binding::Buffer(uniforms.get(name).unwrap_or_else(|| buffers.get(name)))))?;
-        let (color, normal) =
-            if back { (&targets.back, &targets.scratch_normal) } else { (&targets.front, &targets.normal) };
+        let group = kernel.bind(&self.gpu, |name| {
+            Some(Binding::Buffer(
+                uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
+            ))
+        })?;
+        let (color, normal) = if back {
+            (&targets.back, &targets.scratch_normal)
+        } else {
+            (&targets.front, &targets.normal)
+        };
         let clear = |value: f64| wgpu::Operations {
-            load: wgpu::LoadOp::Clear(wgpu::Color { r: value, ..wgpu::Color::default() }),
+            load: wgpu::LoadOp::Clear(wgpu::Color {
+                r: value,
+                ..wgpu::Color::default()
+            }),
             store: wgpu::StoreOp::Store,
         };
         let attachment = |view, value| {
-            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops: clear(value) })
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: clear(value),
+            })
         };
         let timestamp_writes = self.timing.span(pass.name).map(|(query_set, begin, end)| {
             wgpu::RenderPassTimestampWrites {
@@ -575,15 +765,25 @@ impl Renderer {
 }
 
 fn check_cancelled(cancel: &CancellationToken) -> Result<(), RenderError> {
-    if cancel.is_cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
+    if cancel.is_cancelled() {
+        Err(RenderError::Cancelled)
+    } else {
+        Ok(())
+    }
 }
 
 /// Empties sums and queues before a sun's turn.
 fn clear_for_sun(encoder: &mut wgpu::CommandEncoder, buffers: &FrameBuffers) {
     for (name, buffer) in &buffers.by_name {
-        let Some(info) = Slot::by_name(name).map(Slot::info) else { continue };
+        let Some(info) = Slot::by_name(name).map(Slot::info) else {
+            continue;
+        };
         if info.is_queue {
-            let head = if *name == slot_name(Slot::WideQueue) { 16 } else { 0 };
+            let head = if *name == slot_name(Slot::WideQueue) {
+                16
+            } else {
+                0
+            };
             encoder.copy_buffer_to_buffer(&buffers.queue_heads, head, buffer, 0, 16);
         } else if info.lifetime == Lifetime::Sun
             && (*name == slot_name(Slot::Flux) || *name == slot_name(Slot::Energy))

@@ -29,13 +29,15 @@ pub(super) struct Geometry {
 impl Geometry {
     /// Uploads the distinct meshes, sorted by id.
     pub(super) fn upload(gpu: &GpuContext, meshes: &[Arc<Mesh>]) -> Self {
-        let distinct: BTreeMap<&str, &Mesh> = meshes.iter().map(|m| (m.id.as_str(), m.as_ref())).collect();
+        let distinct: BTreeMap<&str, &Mesh> =
+            meshes.iter().map(|m| (m.id.as_str(), m.as_ref())).collect();
         let mut words: Vec<[u32; 4]> = Vec::new();
         let mut places = BTreeMap::new();
         for (id, mesh) in distinct {
             let first_node = words.len() as u32;
             for node in &mesh.hierarchy {
-                let corner = |c: [f32; 3], link| [c[0].to_bits(), c[1].to_bits(), c[2].to_bits(), link];
+                let corner =
+                    |c: [f32; 3], link| [c[0].to_bits(), c[1].to_bits(), c[2].to_bits(), link];
                 words.push(corner(node.min_m, node.entry));
                 words.push(corner(node.max_m, node.exit));
             }
@@ -44,7 +46,9 @@ impl Geometry {
                 for (p, n) in triangle.positions_m.iter().zip(triangle.normals) {
                     words.push([p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), pack_normal(n)]);
                 }
-                let albedo = mesh.materials[triangle.material as usize].albedo.map(f32::to_bits);
+                let albedo = mesh.materials[triangle.material as usize]
+                    .albedo
+                    .map(f32::to_bits);
                 words.push([albedo[0], albedo[1], albedo[2], 0]);
             }
             let place = Place {
@@ -61,14 +65,18 @@ impl Geometry {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
+        gpu.queue
+            .write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
         Self { buffer, places }
     }
 
     /// Whether all these meshes, and no others, are here.
     pub(super) fn holds(&self, meshes: &[Arc<Mesh>]) -> bool {
         meshes.iter().all(|m| self.places.contains_key(&m.id))
-            && self.places.keys().all(|id| meshes.iter().any(|m| &m.id == id))
+            && self
+                .places
+                .keys()
+                .all(|id| meshes.iter().any(|m| &m.id == id))
     }
 
     /// Where a mesh lies.
@@ -91,7 +99,8 @@ impl Geometry {
                 let place = self.place(&object.mesh);
                 let row = |i: usize| vec4(inverse.matrix3.row(i), inverse.translation[i]);
                 // Boxes grow by a rounding error of f32, so that a flat mesh is not missed.
-                let grow = glam::DVec3::splat(1e-6 * object.min.abs().max(object.max.abs()).max_element());
+                let grow =
+                    glam::DVec3::splat(1e-6 * object.min.abs().max(object.max.abs()).max_element());
                 Instance {
                     mesh_x: row(0),
                     mesh_y: row(1),

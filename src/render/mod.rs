@@ -103,7 +103,8 @@ impl Renderer {
         if let Some(folder) = &config.shader_dump {
             dump_shaders(&sources, folder)?;
         }
-        let arena_bytes = (config.level_map_budget_mib << 20).min(gpu.limits.max_storage_buffer_binding_size);
+        let arena_bytes =
+            (config.level_map_budget_mib << 20).min(gpu.limits.max_storage_buffer_binding_size);
         Ok(Self {
             timing: Timing::new(&gpu),
             gpu,
@@ -146,7 +147,11 @@ impl Renderer {
     ///
     /// # Errors
     /// When the scene cannot be rendered within the budget, the GPU fails, or the job is cancelled.
-    pub fn render(&mut self, resolved: &ResolvedScene, cancel: &CancellationToken) -> Result<Frame, RenderError> {
+    pub fn render(
+        &mut self,
+        resolved: &ResolvedScene,
+        cancel: &CancellationToken,
+    ) -> Result<Frame, RenderError> {
         let started = Instant::now();
         self.gpu.check()?;
         let facts = SceneFacts::of(resolved)?;
@@ -184,11 +189,17 @@ impl Renderer {
                     name: p.name.clone(),
                     reason: p.reason.clone(),
                     runs: p.runs,
-                    gpu_ms: gpu_times.iter().find(|(name, _)| *name == p.name).map(|&(_, ms)| ms),
+                    gpu_ms: gpu_times
+                        .iter()
+                        .find(|(name, _)| *name == p.name)
+                        .map(|&(_, ms)| ms),
                 })
                 .collect(),
             absent: plan.absent,
-            time_ms: TimeStats { plan: plan_ms, ..run.time_ms },
+            time_ms: TimeStats {
+                plan: plan_ms,
+                ..run.time_ms
+            },
             memory: MemoryStats {
                 planned_peak_bytes: plan.peak_bytes,
                 peak_bytes: run.peak_bytes,
@@ -201,7 +212,12 @@ impl Renderer {
         };
         stats.warnings.extend(run.warnings);
         stats.time_ms.total = ms_since(started);
-        Ok(Frame { width: run.width, height: run.height, layers: run.layers, stats })
+        Ok(Frame {
+            width: run.width,
+            height: run.height,
+            layers: run.layers,
+            stats,
+        })
     }
 
     /// Frees what is cached for a mesh.
@@ -239,11 +255,18 @@ impl Renderer {
                 budget_bytes: self.memory_budget_bytes,
             });
         }
-        let limit = self.gpu.limits.max_storage_buffer_binding_size.min(self.gpu.limits.max_buffer_size);
+        let limit = self
+            .gpu
+            .limits
+            .max_storage_buffer_binding_size
+            .min(self.gpu.limits.max_buffer_size);
         for slot in &plan.slots {
             if slot.bytes > limit {
                 return Err(RenderError::OverBudget {
-                    what: format!("buffer `{}` (the device's limit for one binding)", slot.name),
+                    what: format!(
+                        "buffer `{}` (the device's limit for one binding)",
+                        slot.name
+                    ),
                     needed_bytes: slot.bytes,
                     budget_bytes: limit,
                 });
@@ -259,7 +282,11 @@ impl Cached for Renderer {
     }
 
     fn arena_bytes(&self, wanted_bytes: u64) -> u64 {
-        if wanted_bytes == 0 && self.arena.is_none() { 0 } else { self.level_maps.stats().budget_bytes }
+        if wanted_bytes == 0 && self.arena.is_none() {
+            0
+        } else {
+            self.level_maps.stats().budget_bytes
+        }
     }
 }
 
@@ -290,8 +317,16 @@ fn cache_change(before: &CacheStats, after: &CacheStats) -> CacheStats {
 
 fn exposure(facts: &SceneFacts, resolved: &ResolvedScene) -> ExposureStats {
     let ev = resolved.scene.output.encoding().exposure_ev;
-    let scale = if facts.white_radiance > 0.0 { ev.exp2() / facts.white_radiance } else { 0.0 };
-    ExposureStats { white_radiance: facts.white_radiance, ev, scale }
+    let scale = if facts.white_radiance > 0.0 {
+        ev.exp2() / facts.white_radiance
+    } else {
+        0.0
+    };
+    ExposureStats {
+        white_radiance: facts.white_radiance,
+        ev,
+        scale,
+    }
 }
 
 fn dump_shaders(sources: &ShaderSources, folder: &std::path::Path) -> Result<(), GpuError> {

@@ -9,7 +9,9 @@ use crate::physics::{attenuation, fresnel, refraction, registry};
 use crate::scene::{ResolvedScene, Scene};
 
 /// Result of comparing this machine's GPU with float64 physics.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+#[derive(
+    Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema,
+)]
 pub struct SelfCheck {
     /// Whether every check passed.
     pub passed: bool,
@@ -18,7 +20,9 @@ pub struct SelfCheck {
 }
 
 /// One check.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
+#[derive(
+    Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema,
+)]
 pub struct SelfCheckItem {
     /// What was compared.
     pub name: String,
@@ -50,9 +54,20 @@ impl Renderer {
             let error = twin_error(&self.gpu, &self.sources, twin, SAMPLES)?;
             checks.push(item(format!("formula {}", twin.name), error, 1.0));
         }
-        checks.push(item("scene: flat water, irradiance".to_owned(), self.flat_error()?, FLAT_TOLERANCE));
-        checks.push(item("scene: waves, energy account".to_owned(), self.wavy_closure()?, CLOSURE_TOLERANCE));
-        Ok(SelfCheck { passed: checks.iter().all(|c| c.passed), checks })
+        checks.push(item(
+            "scene: flat water, irradiance".to_owned(),
+            self.flat_error()?,
+            FLAT_TOLERANCE,
+        ));
+        checks.push(item(
+            "scene: waves, energy account".to_owned(),
+            self.wavy_closure()?,
+            CLOSURE_TOLERANCE,
+        ));
+        Ok(SelfCheck {
+            passed: checks.iter().all(|c| c.passed),
+            checks,
+        })
     }
 
     /// Largest relative error of flat water against its closed form.
@@ -64,19 +79,24 @@ impl Renderer {
             return Ok(f64::INFINITY);
         };
         let truth = [0.3, 0.05, 0.02].map(|c| {
-            1000.0 * to_light.y
+            1000.0
+                * to_light.y
                 * fresnel::fresnel_transmittance(to_light.y, 1.333)
                 * attenuation::transmission(c, 2.0 / -down.y)
         });
         let errors = map.chunks_exact(3).flat_map(|texel| {
-            texel.iter().zip(truth).map(|(&value, truth)| ((f64::from(value) - truth) / truth).abs())
+            texel
+                .iter()
+                .zip(truth)
+                .map(|(&value, truth)| ((f64::from(value) - truth) / truth).abs())
         });
         Ok(errors.fold(0.0, f64::max))
     }
 
     /// Closure of the energy account under waves.
     fn wavy_closure(&mut self) -> Result<f64, GpuError> {
-        let wave = r#"{"kind": "sine", "amplitude_m": 0.03, "wavelength_m": 0.9, "direction_deg": 20}"#;
+        let wave =
+            r#"{"kind": "sine", "amplitude_m": 0.03, "wavelength_m": 0.9, "direction_deg": 20}"#;
         let resolved = small_scene(&format!("[{wave}]"));
         Ok(self.small_map(&resolved)?.1)
     }
@@ -85,16 +105,32 @@ impl Renderer {
         let mut frame = match self.render(resolved, &CancellationToken::new()) {
             Ok(frame) => frame,
             Err(RenderError::Gpu(error)) => return Err(error),
-            Err(other) => return Err(GpuError::Validation(format!("the self-check's scene: {other}"))),
+            Err(other) => {
+                return Err(GpuError::Validation(format!(
+                    "the self-check's scene: {other}"
+                )));
+            }
         };
-        let map = frame.layers.remove(&crate::scene::LayerName::Irradiance).map_or(Vec::new(), |layer| layer.data);
-        let closure = frame.stats.energy.first().map_or(f64::INFINITY, |account| account.closure);
+        let map = frame
+            .layers
+            .remove(&crate::scene::LayerName::Irradiance)
+            .map_or(Vec::new(), |layer| layer.data);
+        let closure = frame
+            .stats
+            .energy
+            .first()
+            .map_or(f64::INFINITY, |account| account.closure);
         Ok((map, closure))
     }
 }
 
 fn item(name: String, error: f64, tolerance: f64) -> SelfCheckItem {
-    SelfCheckItem { name, error, tolerance, passed: error <= tolerance }
+    SelfCheckItem {
+        name,
+        error,
+        tolerance,
+        passed: error <= tolerance,
+    }
 }
 
 fn small_scene(waves: &str) -> ResolvedScene {
@@ -109,7 +145,10 @@ fn small_scene(waves: &str) -> ResolvedScene {
         }}"#
     );
     let scene: Scene = Scene::from_json(json.as_bytes()).expect("the self-check's scene is valid");
-    ResolvedScene { scene, meshes: Vec::new() }
+    ResolvedScene {
+        scene,
+        meshes: Vec::new(),
+    }
 }
 
 /// Largest error of a twin's f32 half over its domain, as a share of what its tolerance allows.
@@ -133,7 +172,11 @@ pub fn twin_error(
             let allowed = twin.tolerance.absolute + twin.tolerance.relative * truth.abs();
             let error = (f64::from(*found) - truth).abs() / allowed;
             // NaN never passes.
-            worst = if error.is_nan() { f64::INFINITY } else { worst.max(if allowed > 0.0 { error } else { 0.0 }) };
+            worst = if error.is_nan() {
+                f64::INFINITY
+            } else {
+                worst.max(if allowed > 0.0 { error } else { 0.0 })
+            };
         }
     }
     Ok(worst)
@@ -165,29 +208,41 @@ fn run_twin(
         twin.call
     ));
     let kernel = Kernel::from_text(gpu, twin.file, text, "twin_main", &[])?;
-    let arguments: Vec<[f32; 8]> = inputs.iter().map(|(args, _)| args.map(|a| a as f32)).collect();
+    let arguments: Vec<[f32; 8]> = inputs
+        .iter()
+        .map(|(args, _)| args.map(|a| a as f32))
+        .collect();
     let buffer = |label, bytes: u64| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: bytes,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_DST
+                | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         })
     };
     let source = buffer("arguments", 32 * inputs.len() as u64);
     let target = buffer("results", 16 * inputs.len() as u64);
-    gpu.queue.write_buffer(&source, 0, bytemuck::cast_slice(&arguments));
+    gpu.queue
+        .write_buffer(&source, 0, bytemuck::cast_slice(&arguments));
     let group = kernel.bind(gpu, |name| match name {
         "arguments" => Some(Binding::Buffer(&source)),
         "results" => Some(Binding::Buffer(&target)),
         _ => None,
     })?;
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(kernel.pipeline());
         pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(u32::try_from(inputs.len().div_ceil(64)).unwrap_or(u32::MAX), 1, 1);
+        pass.dispatch_workgroups(
+            u32::try_from(inputs.len().div_ceil(64)).unwrap_or(u32::MAX),
+            1,
+            1,
+        );
     }
     gpu.queue.submit([encoder.finish()]);
     readback::read(gpu, &target, 16 * inputs.len() as u64)

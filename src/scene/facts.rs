@@ -5,10 +5,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ranges::DEFAULT_MAP_SIDE;
 use super::placement::{LevelBox, ObjectFacts};
+use super::ranges::DEFAULT_MAP_SIDE;
 use super::window::{self, Rect, Region};
-use super::{Camera, Issue, LayerName, Light, Output, Quality, Receiver, ResolvedScene, SceneError};
+use super::{
+    Camera, Issue, LayerName, Light, Output, Quality, Receiver, ResolvedScene, SceneError,
+};
 use crate::physics::{fresnel, refraction, sky};
 use crate::stats::Warning;
 use crate::waves::WaterSurface;
@@ -123,13 +125,21 @@ impl SceneFacts {
         let origin_m = origin(resolved);
         let surface = WaterSurface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z));
         let water = &scene.water;
-        let extinction_per_m = std::array::from_fn(|c| water.absorption_per_m[c] + water.scattering_per_m[c]);
+        let extinction_per_m =
+            std::array::from_fn(|c| water.absorption_per_m[c] + water.scattering_per_m[c]);
         let air_suns = air_suns(&scene.lights);
         let sky_radiance = sky_sum(&scene.lights);
         let floor = scene.floor.as_ref().map(|f| {
             let centre = DVec2::from(f.center_m) - DVec2::new(origin_m.x, origin_m.z);
             let half = DVec2::from(f.size_m) * 0.5;
-            FloorFacts { y_m: -f.depth_m, rect: Rect { min: centre - half, max: centre + half }, albedo: f.albedo }
+            FloorFacts {
+                y_m: -f.depth_m,
+                rect: Rect {
+                    min: centre - half,
+                    max: centre + half,
+                },
+                albedo: f.albedo,
+            }
         });
         let mut facts = Self {
             origin_m,
@@ -183,16 +193,23 @@ impl SceneFacts {
 
     /// Indices of objects that can be struck by light under water.
     pub fn wet_objects(&self) -> impl Iterator<Item = usize> + '_ {
-        self.objects.iter().enumerate().filter(|(_, o)| o.wet).map(|(i, _)| i)
+        self.objects
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| o.wet)
+            .map(|(i, _)| i)
     }
 
     /// Whether anything under water waits for light.
     pub fn has_receiver(&self) -> bool {
         match self.map_receiver {
             Some(Receiver::Floor(_)) => self.floor_map.is_some(),
-            Some(Receiver::Object(index)) => self.objects.get(index as usize).is_some_and(|o| o.wet),
+            Some(Receiver::Object(index)) => {
+                self.objects.get(index as usize).is_some_and(|o| o.wet)
+            }
             None => {
-                self.wants_camera_irradiance() && (self.floor_map.is_some() || self.wet_objects().next().is_some())
+                self.wants_camera_irradiance()
+                    && (self.floor_map.is_some() || self.wet_objects().next().is_some())
             }
         }
     }
@@ -201,16 +218,25 @@ impl SceneFacts {
         match output {
             Output::View(view) => {
                 self.layers.clone_from(&view.layers);
-                self.camera = camera.map(|c| camera_facts(c, self.origin_m, view.width, view.height));
+                self.camera =
+                    camera.map(|c| camera_facts(c, self.origin_m, view.width, view.height));
                 let region = match &self.camera {
-                    Some(camera) if self.wants_camera_irradiance() => window::visible_floor(self, camera),
+                    Some(camera) if self.wants_camera_irradiance() => {
+                        window::visible_floor(self, camera)
+                    }
                     _ => Region::Nothing,
                 };
                 if let Region::Rect(rect) = region {
                     let size = rect.size();
                     let texel = size.max_element() / f64::from(self.quality.map_texels);
-                    let count = |length: f64| ((length / texel).ceil() as u32).clamp(1, self.quality.map_texels);
-                    self.floor_map = Some(FloorMap { rect, width: count(size.x), height: count(size.y) });
+                    let count = |length: f64| {
+                        ((length / texel).ceil() as u32).clamp(1, self.quality.map_texels)
+                    };
+                    self.floor_map = Some(FloorMap {
+                        rect,
+                        width: count(size.x),
+                        height: count(size.y),
+                    });
                 }
             }
             Output::IrradianceMap(map) => {
@@ -219,7 +245,8 @@ impl SceneFacts {
                 if matches!(map.receiver, Receiver::Object(_)) {
                     return;
                 }
-                let to_local = |p: [f64; 2]| DVec2::from(p) - DVec2::new(self.origin_m.x, self.origin_m.z);
+                let to_local =
+                    |p: [f64; 2]| DVec2::from(p) - DVec2::new(self.origin_m.x, self.origin_m.z);
                 self.floor_map = Some(FloorMap {
                     rect: Rect {
                         min: map.min_m.map_or(floor.rect.min, to_local),
@@ -261,15 +288,23 @@ impl SceneFacts {
             if sun.irradiance_w_m2.iter().all(|&e| e == 0.0) {
                 continue;
             }
-            let to_light =
-                refraction::direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians());
-            let Some(flat) = refraction::refract_direction(-to_light, DVec3::Y, self.ior) else { continue };
+            let to_light = refraction::direction_to_light(
+                sun.elevation_deg.to_radians(),
+                sun.azimuth_deg.to_radians(),
+            );
+            let Some(flat) = refraction::refract_direction(-to_light, DVec3::Y, self.ior) else {
+                continue;
+            };
             let texels = self.quality.level_map_texels;
             let boxes: Vec<Option<LevelBox>> = self
                 .objects
                 .iter()
                 .zip(&resolved.meshes)
-                .map(|(object, mesh)| object.wet.then(|| LevelBox::new(object, mesh, flat, texels)))
+                .map(|(object, mesh)| {
+                    object
+                        .wet
+                        .then(|| LevelBox::new(object, mesh, flat, texels))
+                })
                 .collect();
             let window = window::light_window(self, to_light).ok_or_else(|| SceneError {
                 issues: vec![Issue::invalid(
@@ -316,7 +351,9 @@ impl SceneFacts {
             }
         }
         for sun in &self.suns {
-            let steepest = self.surface.max_slope_along(DVec2::new(sun.to_light.x, sun.to_light.z).normalize_or_zero());
+            let steepest = self
+                .surface
+                .max_slope_along(DVec2::new(sun.to_light.x, sun.to_light.z).normalize_or_zero());
             if steepest * DVec2::new(sun.to_light.x, sun.to_light.z).length() > sun.to_light.y {
                 let mut warning = Warning::new(
                     "waves_shade_waves",
@@ -358,7 +395,12 @@ fn geometry_bytes(resolved: &ResolvedScene) -> u64 {
     let distinct: std::collections::BTreeMap<&str, u64> = resolved
         .meshes
         .iter()
-        .map(|m| (m.id.as_str(), 32 * m.hierarchy.len() as u64 + 64 * m.triangles.len() as u64))
+        .map(|m| {
+            (
+                m.id.as_str(),
+                32 * m.hierarchy.len() as u64 + 64 * m.triangles.len() as u64,
+            )
+        })
         .collect();
     distinct.values().sum()
 }
@@ -368,7 +410,10 @@ fn air_suns(lights: &[Light]) -> Vec<(DVec3, [f64; 3])> {
         .iter()
         .filter_map(|light| match light {
             Light::Sun(sun) if sun.elevation_deg > 0.0 => Some((
-                refraction::direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians()),
+                refraction::direction_to_light(
+                    sun.elevation_deg.to_radians(),
+                    sun.azimuth_deg.to_radians(),
+                ),
                 sun.irradiance_w_m2,
             )),
             _ => None,

@@ -33,7 +33,8 @@ impl ResolvedScene {
                 let [x, y, z, w] = object.rotation;
                 let linear = DMat3::from_quat(DQuat::from_xyzw(x, y, z, w).normalize())
                     * DMat3::from_diagonal(DVec3::from(object.scale.per_axis()));
-                let translation = linear * mesh.origin_m + DVec3::from(object.translation_m) - origin_m;
+                let translation =
+                    linear * mesh.origin_m + DVec3::from(object.translation_m) - origin_m;
                 let local_from_mesh = DAffine3::from_mat3_translation(linear, translation);
                 let (min, max) = bounds(&local_from_mesh, mesh);
                 ObjectFacts {
@@ -133,18 +134,32 @@ impl LevelBox {
         let (across_u, across_v) = along.any_orthonormal_pair();
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for corner in corners(mesh) {
-            let p = DVec3::new(across_u.dot(corner), across_v.dot(corner), along.dot(corner));
+            let p = DVec3::new(
+                across_u.dot(corner),
+                across_v.dot(corner),
+                along.dot(corner),
+            );
             low = low.min(p);
             high = high.max(p);
         }
         // Two texels of rim, so that silhouettes and bilinear look-ups stay inside.
         let n = f64::from(texels);
-        let side = (high - low).truncate().max_element().max(1e-9 * high.abs().max_element().max(1e-6)) * n / (n - 4.0);
+        let side = (high - low)
+            .truncate()
+            .max_element()
+            .max(1e-9 * high.abs().max_element().max(1e-6))
+            * n
+            / (n - 4.0);
         let middle = (low + high) * 0.5;
         let per_unit = n / side;
         let s_rim = 1e-3 * (high.z - low.z) + 1e-4 * side;
-        let row = |across: DVec3, centre: f64| (across * per_unit).extend(0.5 * n - centre * per_unit);
-        let map_from_mesh = [row(across_u, middle.x), row(across_v, middle.y), along.extend(0.0)];
+        let row =
+            |across: DVec3, centre: f64| (across * per_unit).extend(0.5 * n - centre * per_unit);
+        let map_from_mesh = [
+            row(across_u, middle.x),
+            row(across_v, middle.y),
+            along.extend(0.0),
+        ];
         let map_from_local = map_from_mesh.map(|r| {
             let linear = mesh_from_local.matrix3.transpose() * r.truncate();
             linear.extend(r.w + r.truncate().dot(mesh_from_local.translation))
@@ -153,7 +168,12 @@ impl LevelBox {
         let texel_u = object.local_from_mesh.matrix3 * (across_u / per_unit);
         let texel_v = object.local_from_mesh.matrix3 * (across_v / per_unit);
         Self {
-            key: LevelMapKey { mesh: object.mesh.clone(), direction, texels, layers: 1 },
+            key: LevelMapKey {
+                mesh: object.mesh.clone(),
+                direction,
+                texels,
+                layers: 1,
+            },
             map_from_mesh,
             s_range: [low.z - s_rim, high.z + s_rim],
             map_from_local,

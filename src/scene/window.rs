@@ -28,7 +28,10 @@ impl Rect {
     }
 
     fn including(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
     }
 }
 
@@ -50,14 +53,18 @@ struct Drift {
 fn drift(facts: &SceneFacts, direction: DVec3) -> Option<Drift> {
     let mut bounds: Option<(DVec2, DVec2)> = None;
     let rim = facts.surface.rim_slopes(RIM_DIRECTIONS);
-    let tilts = std::iter::once(DVec2::ZERO)
-        .chain(rim.iter().flat_map(|&s| [0.25, 0.5, 0.75, 1.0].map(|share| s * share)));
+    let tilts = std::iter::once(DVec2::ZERO).chain(
+        rim.iter()
+            .flat_map(|&s| [0.25, 0.5, 0.75, 1.0].map(|share| s * share)),
+    );
     for slope in tilts {
         let normal = refraction::normal_from_slope(slope.x, slope.y);
         if direction.dot(normal) >= 0.0 {
             continue; // looks away from the light: nothing comes through
         }
-        let Some(ray) = refraction::refract_direction(direction, normal, facts.ior) else { continue };
+        let Some(ray) = refraction::refract_direction(direction, normal, facts.ior) else {
+            continue;
+        };
         if ray.y >= -1e-3 {
             continue; // (nearly) upwards: reaches no receiver
         }
@@ -66,7 +73,10 @@ fn drift(facts: &SceneFacts, direction: DVec3) -> Option<Drift> {
     }
     bounds.map(|(low, high)| {
         let widen = (high - low) * MARGIN;
-        Drift { low: low - widen, high: high + widen }
+        Drift {
+            low: low - widen,
+            high: high + widen,
+        }
     })
 }
 
@@ -86,7 +96,12 @@ pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
     let mut window: Option<Rect> = None;
     let mut add = |rect: Rect| window = Some(window.map_or(rect, |w: Rect| w.including(rect)));
     if let (Some(map), Some(floor)) = (&facts.floor_map, &facts.floor) {
-        add(entry(map.rect, &drift, -floor.y_m - height, -floor.y_m + height));
+        add(entry(
+            map.rect,
+            &drift,
+            -floor.y_m - height,
+            -floor.y_m + height,
+        ));
     }
     let receives = |index: usize| match facts.map_receiver {
         None => true,
@@ -99,25 +114,37 @@ pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
             min: DVec2::new(object.min.x, object.min.z),
             max: DVec2::new(object.max.x, object.max.z),
         };
-        add(entry(rect, &drift, -object.max.y - height, -object.min.y + height));
+        add(entry(
+            rect,
+            &drift,
+            -object.max.y - height,
+            -object.min.y + height,
+        ));
     }
     window.map(|w| {
         // A margin against rounding at the rim, so that no texel at the edge misses a sliver.
         let margin = DVec2::splat(1e-5 * w.size().max_element().max(1e-6));
-        Rect { min: w.min - margin, max: w.max + margin }
+        Rect {
+            min: w.min - margin,
+            max: w.max + margin,
+        }
     })
 }
 
 /// The part of the floor that a camera can see, through waves and all.
 pub fn visible_floor(facts: &SceneFacts, camera: &CameraFacts) -> Region {
-    let Some(floor) = &facts.floor else { return Region::Nothing };
+    let Some(floor) = &facts.floor else {
+        return Region::Nothing;
+    };
     let height = facts.surface.max_height_m();
     let whole = Region::Rect(floor.rect);
     if camera.eye.y <= height {
         // Under water (or in the waves) total reflection shows the floor in the surface: anything may be seen.
         return whole;
     }
-    let tilts: Vec<DVec2> = std::iter::once(DVec2::ZERO).chain(facts.surface.rim_slopes(16)).collect();
+    let tilts: Vec<DVec2> = std::iter::once(DVec2::ZERO)
+        .chain(facts.surface.rim_slopes(16))
+        .collect();
     let mut seen: Option<Rect> = None;
     for j in 0..VIEW_SAMPLES {
         for i in 0..VIEW_SAMPLES {
@@ -138,7 +165,10 @@ pub fn visible_floor(facts: &SceneFacts, camera: &CameraFacts) -> Region {
                 let water = eye + direction * ((eye.y - level) / -direction.y);
                 for slope in &tilts {
                     let normal = refraction::normal_from_slope(slope.x, slope.y);
-                    let Some(ray) = refraction::refract_direction(direction, normal, facts.ior) else { continue };
+                    let Some(ray) = refraction::refract_direction(direction, normal, facts.ior)
+                    else {
+                        continue;
+                    };
                     if ray.y >= -1e-3 {
                         return whole;
                     }
@@ -150,9 +180,15 @@ pub fn visible_floor(facts: &SceneFacts, camera: &CameraFacts) -> Region {
             }
         }
     }
-    let Some(seen) = seen else { return Region::Nothing };
+    let Some(seen) = seen else {
+        return Region::Nothing;
+    };
     let grow = seen.size() * 0.03;
     let min = (seen.min - grow).max(floor.rect.min);
     let max = (seen.max + grow).min(floor.rect.max);
-    if min.x < max.x && min.y < max.y { Region::Rect(Rect { min, max }) } else { Region::Nothing }
+    if min.x < max.x && min.y < max.y {
+        Region::Rect(Rect { min, max })
+    } else {
+        Region::Nothing
+    }
 }
