@@ -7,7 +7,7 @@ use super::slot::{self, Slot};
 use super::surface::wanted_for_sun;
 
 /// Texels of a workgroup, as in the shader.
-const TEXELS_PER_GROUP: u32 = 64 * 64;
+pub const TEXELS_PER_GROUP: u32 = 64 * 64;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {

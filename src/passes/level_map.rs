@@ -6,6 +6,9 @@ use super::slot::Slot;
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelBox;
 
+/// Depth a level map is cleared to where there is nothing, as in the shaders.
+pub const EMPTY_DEPTH: f64 = 1e30;
+
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "level_map",

@@ -21,6 +21,7 @@ pub mod shaders;
 pub mod slot;
 pub mod split;
 pub mod surface;
+pub mod term;
 
 pub use desc::{Groups, PassDesc, Repeat, Step, Work};
 pub use slot::Slot;

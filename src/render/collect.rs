@@ -6,24 +6,12 @@ use glam::DVec3;
 
 use super::RenderError;
 use crate::frame::Layer;
-use crate::passes::light;
 use crate::passes::slot::{self, ENERGY_TERMS, Slot};
+use crate::passes::{light, term};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
 use crate::scene::{LayerName, Receiver};
 use crate::stats::{EnergyAccount, Warning};
-
-/// Terms of the account, as in `shaders/shared/flux.wgsl` (a test compares the numbers).
-pub(super) mod term {
-    pub(crate) const EMITTED: usize = 0;
-    pub(crate) const REFLECTED: usize = 1;
-    pub(crate) const MISSED: usize = 2;
-    pub(crate) const EXTINGUISHED: usize = 3;
-    pub(crate) const LEFT: usize = 6;
-    pub(crate) const LANDED: usize = 9;
-    pub(crate) const TORN: usize = 12;
-    pub(crate) const TORN_COUNT: usize = 13;
-}
 
 /// The accounts of all suns from their raw sums, and what is worth a warning.
 pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Vec<Warning>) {

@@ -10,6 +10,7 @@ use crate::gpu::kernel::RasterTargets;
 use crate::gpu::{Binding, GpuError, Kernel, RasterKernel, readback};
 use crate::passes::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use crate::passes::gpu_data::{Receiver, Wave};
+use crate::passes::level_map::EMPTY_DEPTH;
 use crate::passes::slot::{ENERGY_TERMS, Lifetime, Slot, WIDE_GROUPS, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
@@ -20,8 +21,6 @@ use crate::stats::TimeStats;
 
 /// Bytes of one sun's energy account.
 const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
-/// Depth a level map is cleared to where there is nothing.
-const EMPTY_DEPTH: f64 = 1e30;
 
 /// The buffers of one frame, by slot name.
 pub(super) struct FrameBuffers {

@@ -1,0 +1,18 @@
+//! Terms of the energy account, as in `shaders/shared/flux.wgsl` (a test compares the numbers). Spectral terms take three places.
+
+/// Falls on the simulated piece of water.
+pub const EMITTED: usize = 0;
+/// Reflected at the surface.
+pub const REFLECTED: usize = 1;
+/// Meets no receiver.
+pub const MISSED: usize = 2;
+/// Absorbed or scattered on the way, per channel.
+pub const EXTINGUISHED: usize = 3;
+/// Passes the edges of the maps, per channel.
+pub const LEFT: usize = 6;
+/// Lies on the maps, per channel.
+pub const LANDED: usize = 9;
+/// Flux of beams that straddle receivers to the end.
+pub const TORN: usize = 12;
+/// How many those are.
+pub const TORN_COUNT: usize = 13;

@@ -1,0 +1,312 @@
+//! Plans: a snapshot for every scene of the project, and nothing in them that a scene does not call for.
+
+use std::path::PathBuf;
+
+use caustica::passes::{self, PassDesc};
+use caustica::plan::{self, Cached, Plan, PlanError};
+use caustica::scene::ResolvedScene;
+use caustica::scene::facts::SceneFacts;
+use caustica::scene::placement::LevelMapKey;
+use serde_json::{Value, json};
+
+use super::scene_files;
+
+/// A cache that holds nothing, or everything.
+struct FakeCache {
+    full: bool,
+}
+
+/// Bytes of the arena.
+const ARENA: u64 = 64 << 20;
+
+impl Cached for FakeCache {
+    fn has_level_map(&self, _: &LevelMapKey) -> bool {
+        self.full
+    }
+
+    fn arena_bytes(&self, wanted_bytes: u64) -> u64 {
+        if wanted_bytes == 0 && !self.full {
+            0
+        } else {
+            ARENA
+        }
+    }
+}
+
+fn planned(resolved: &ResolvedScene) -> Plan {
+    planned_with(resolved, false)
+}
+
+fn planned_with(resolved: &ResolvedScene, full: bool) -> Plan {
+    let facts = SceneFacts::of(resolved).unwrap();
+    plan::plan_scene(&facts, &FakeCache { full }).unwrap()
+}
+
+fn names(plan: &Plan) -> Vec<&str> {
+    plan.passes.iter().map(|pass| pass.name.as_str()).collect()
+}
+
+fn is_absent(plan: &Plan, name: &str) -> bool {
+    plan.absent.iter().any(|pass| pass.name == name)
+}
+
+/// A pool with everything in it, seen by a camera.
+fn pool() -> Value {
+    json!({
+        "water": {
+            "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 1.1 }],
+            "absorption_per_m": [0.3, 0.1, 0.05]
+        },
+        "floor": { "depth_m": 2, "size_m": [8, 8] },
+        "lights": [
+            { "kind": "sun", "elevation_deg": 50, "irradiance_w_m2": [1, 1, 1] },
+            { "kind": "sky", "radiance_w_m2_sr": [1, 1, 1] }
+        ],
+        "objects": [{ "mesh": "box.obj", "translation_m": [0, -1, 0] }],
+        "camera": { "position_m": [0, 3, 2], "target_m": [0, -1, 0] },
+        "output": { "kind": "view", "width": 96, "height": 64 }
+    })
+}
+
+fn pool_with(changes: &[(&str, Value)]) -> Plan {
+    let mut scene = pool();
+    for (key, value) in changes {
+        scene[*key] = value.clone();
+    }
+    planned(&scene_files::scene(scene))
+}
+
+const LEVEL_MAP_PASSES: [&str; 2] = ["level_map", "level_map_pyramid"];
+const CAMERA_PASSES: [&str; 3] = ["camera_hits", "camera_irradiance", "shade"];
+const SUN_PASSES: [&str; 7] = [
+    "surface",
+    "beams",
+    "hits",
+    "deposit",
+    "split",
+    "landed",
+    "irradiance",
+];
+
+fn snapshot(name: &str) -> PathBuf {
+    scene_files::folder()
+        .join("plans")
+        .join(format!("{name}.txt"))
+}
+
+#[test]
+fn every_scene_has_its_plan() {
+    let bless = std::env::var_os("BLESS").is_some();
+    for name in scene_files::names() {
+        let text = planned(&scene_files::load(&name, &[])).to_string();
+        let path = snapshot(&name);
+        if bless {
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(&path, &text).unwrap();
+        }
+        let kept = std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}; BLESS=1 writes the plan", path.display()));
+        assert_eq!(
+            kept, text,
+            "the plan of {name} has changed; BLESS=1 accepts it"
+        );
+    }
+}
+
+#[test]
+fn no_plan_is_left_without_its_scene() {
+    let names = scene_files::names();
+    for entry in std::fs::read_dir(scene_files::folder().join("plans")).unwrap() {
+        let file = entry.unwrap().file_name().into_string().unwrap();
+        let name = file.strip_suffix(".txt").unwrap_or(&file);
+        assert!(
+            names.iter().any(|n| n == name),
+            "{file} belongs to no scene"
+        );
+    }
+}
+
+#[test]
+fn a_full_scene_needs_every_pass() {
+    let plan = pool_with(&[]);
+    let all: Vec<&str> = passes::ALL.iter().map(|pass| pass.name).collect();
+    assert_eq!(names(&plan), all);
+    assert!(plan.absent.is_empty(), "{:?}", plan.absent);
+    assert!(plan.passes.iter().all(|pass| !pass.reason.is_empty()));
+}
+
+#[test]
+fn every_pass_is_in_or_out_with_a_reason() {
+    for name in scene_files::names() {
+        let plan = planned(&scene_files::load(&name, &[]));
+        for pass in passes::ALL {
+            let is_in = names(&plan).contains(&pass.name);
+            assert_ne!(
+                is_in,
+                is_absent(&plan, pass.name),
+                "{} in {name}",
+                pass.name
+            );
+        }
+        assert!(plan.absent.iter().all(|pass| pass.reason.len() > 10));
+    }
+}
+
+#[test]
+fn clear_water_attenuates_nothing() {
+    let clear = pool_with(&[("water", json!({}))]);
+    assert!(is_absent(&clear, "attenuation"));
+    assert!(is_absent(&clear, "spectral_flux"));
+    let grey = pool_with(&[("water", json!({ "absorption_per_m": [0.1, 0.1, 0.1] }))]);
+    assert!(!is_absent(&grey, "attenuation"));
+    assert!(is_absent(&grey, "spectral_flux"));
+}
+
+#[test]
+fn one_channel_takes_a_third_of_the_flux_sums() {
+    let flux = |plan: &Plan| plan.slots.iter().find(|s| s.name == "flux").unwrap().bytes;
+    let clear = pool_with(&[("water", json!({}))]);
+    let waves = json!({ "absorption_per_m": [0.3, 0.1, 0.05] });
+    let tinted = pool_with(&[("water", waves)]);
+    assert_eq!(3 * flux(&clear), flux(&tinted));
+}
+
+#[test]
+fn without_meshes_there_are_no_level_maps() {
+    let plan = pool_with(&[("objects", json!([]))]);
+    for pass in LEVEL_MAP_PASSES {
+        assert!(is_absent(&plan, pass), "{pass}");
+    }
+    assert!(is_absent(&plan, "split"));
+    assert!(
+        plan.slots
+            .iter()
+            .all(|slot| slot.name != "level_maps" || slot.bytes <= 16)
+    );
+}
+
+#[test]
+fn cached_level_maps_are_not_built_again() {
+    let plan = planned_with(&scene_files::scene(pool()), true);
+    for pass in LEVEL_MAP_PASSES {
+        assert!(is_absent(&plan, pass), "{pass}");
+    }
+    assert!(names(&plan).contains(&"split"));
+    assert!(
+        plan.slots
+            .iter()
+            .any(|slot| slot.name == "level_maps" && slot.bytes == ARENA)
+    );
+}
+
+#[test]
+fn an_irradiance_map_needs_no_camera() {
+    let plan = pool_with(&[(
+        "output",
+        json!({ "kind": "irradiance_map", "receiver": "floor" }),
+    )]);
+    for pass in CAMERA_PASSES {
+        assert!(is_absent(&plan, pass), "{pass}");
+    }
+}
+
+#[test]
+fn nothing_under_water_means_no_caustics() {
+    let plan = planned(&scene_files::load("dry", &[]));
+    for pass in SUN_PASSES.iter().chain(&LEVEL_MAP_PASSES) {
+        assert!(is_absent(&plan, pass), "{pass}");
+    }
+}
+
+#[test]
+fn no_sun_means_no_caustics() {
+    for elevation in [-10.0, 0.0] {
+        let sun =
+            json!([{ "kind": "sun", "elevation_deg": elevation, "irradiance_w_m2": [1, 1, 1] }]);
+        let plan = pool_with(&[("lights", sun)]);
+        for pass in SUN_PASSES.iter().chain(&LEVEL_MAP_PASSES) {
+            assert!(is_absent(&plan, pass), "{pass} at {elevation}");
+        }
+    }
+}
+
+#[test]
+fn geometry_layers_need_no_light() {
+    for layers in [json!(["depth"]), json!(["normal", "position", "albedo"])] {
+        let output =
+            json!({ "kind": "view", "width": 96, "height": 64, "layers": layers, "format": "exr" });
+        let plan = pool_with(&[("output", output)]);
+        assert_eq!(names(&plan), ["camera_hits"]);
+    }
+}
+
+#[test]
+fn irradiance_alone_is_not_shaded() {
+    let output = json!({ "kind": "view", "width": 96, "height": 64, "layers": ["irradiance"], "format": "exr" });
+    let plan = pool_with(&[("output", output)]);
+    assert!(is_absent(&plan, "shade"));
+    assert!(names(&plan).contains(&"camera_irradiance"));
+}
+
+#[test]
+fn passes_run_once_per_sun_level_map_and_band() {
+    let suns: Vec<Value> = [20.0, 50.0, 80.0]
+        .iter()
+        .map(|e| json!({ "kind": "sun", "elevation_deg": e, "irradiance_w_m2": [1, 1, 1] }))
+        .collect();
+    let output = json!({ "kind": "view", "width": 4096, "height": 4096 });
+    let plan = pool_with(&[("lights", json!(suns)), ("output", output)]);
+    let runs = |name: &str| plan.passes.iter().find(|p| p.name == name).unwrap().runs;
+    assert_eq!(runs("deposit"), 3);
+    assert_eq!(runs("level_map"), 3);
+    assert_eq!(
+        runs("shade"),
+        8,
+        "32 MiB are 512 rows of 4096 pixels of 16 bytes"
+    );
+}
+
+#[test]
+fn equal_meshes_under_one_sun_share_a_level_map() {
+    let objects = json!([
+        { "mesh": "box.obj", "translation_m": [0, -1, 0] },
+        { "mesh": "box.obj", "translation_m": [2, -1, 0] }
+    ]);
+    let plan = pool_with(&[("objects", objects)]);
+    let level_map = plan.passes.iter().find(|p| p.name == "level_map").unwrap();
+    assert_eq!(level_map.runs, 1);
+}
+
+#[test]
+fn the_peak_is_the_sum_of_the_slots() {
+    for name in scene_files::names() {
+        let plan = planned(&scene_files::load(&name, &[]));
+        let sum: u64 = plan.slots.iter().map(|slot| slot.bytes).sum();
+        assert_eq!(plan.peak_bytes, sum, "{name}");
+    }
+}
+
+#[test]
+fn a_pass_that_nobody_feeds_is_an_error() {
+    let facts = SceneFacts::of(&scene_files::scene(pool())).unwrap();
+    for gone in ["surface", "camera_hits", "hits"] {
+        let list: Vec<&PassDesc> = passes::ALL.into_iter().filter(|p| p.name != gone).collect();
+        let error = plan::plan(&list, &facts, &FakeCache { full: false }).unwrap_err();
+        let PlanError::NothingWrites { slot, .. } = error;
+        assert!(!slot.is_empty(), "{gone}");
+    }
+}
+
+#[test]
+fn a_pass_before_its_source_is_an_error() {
+    let facts = SceneFacts::of(&scene_files::scene(pool())).unwrap();
+    let mut list = passes::ALL.to_vec();
+    let place = |name: &str| passes::ALL.iter().position(|p| p.name == name).unwrap();
+    list.swap(place("beams"), place("hits"));
+    let error = plan::plan(&list, &facts, &FakeCache { full: false }).unwrap_err();
+    let expected = PlanError::NothingWrites {
+        pass: "hits",
+        slot: "beams",
+    };
+    assert_eq!(error, expected);
+}

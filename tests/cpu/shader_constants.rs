@@ -1,0 +1,281 @@
+//! Figures that stand in Rust and in WGSL are the same, and dispatches cover their work.
+
+use caustica::gpu::shader::Module;
+use caustica::passes::camera_irradiance::MAX_SUNS;
+use caustica::passes::desc::Run;
+use caustica::passes::{
+    self, Groups, PassDesc, Repeat, Work, landed, level_map, light, slot, term,
+};
+use caustica::scene::facts::SceneFacts;
+use serde_json::json;
+use wgpu::naga::{self, Expression, Literal, TypeInner};
+
+use super::scene_files;
+use super::shaders::{module, pass_modules};
+
+fn constant(module: &Module, name: &str) -> Option<f64> {
+    let (_, found) = module
+        .ir
+        .constants
+        .iter()
+        .find(|(_, constant)| constant.name.as_deref() == Some(name))?;
+    match module.ir.global_expressions[found.init] {
+        Expression::Literal(Literal::U32(v)) => Some(f64::from(v)),
+        Expression::Literal(Literal::I32(v)) => Some(f64::from(v)),
+        Expression::Literal(Literal::F32(v)) => Some(f64::from(v)),
+        _ => None,
+    }
+}
+
+/// Compares a constant in every module that has it; some must.
+fn agrees(name: &str, expected: f64) {
+    let mut seen = 0;
+    for (path, module) in pass_modules() {
+        if let Some(found) = constant(&module, name) {
+            assert_eq!(found as f32, expected as f32, "{name} in {path}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 0, "no shader has {name}");
+}
+
+#[test]
+fn terms_of_the_energy_account_agree() {
+    agrees("TERM_EMITTED", term::EMITTED as f64);
+    agrees("TERM_REFLECTED", term::REFLECTED as f64);
+    agrees("TERM_MISSED", term::MISSED as f64);
+    agrees("TERM_EXTINGUISHED", term::EXTINGUISHED as f64);
+    agrees("TERM_LEFT", term::LEFT as f64);
+    agrees("TERM_LANDED", term::LANDED as f64);
+    agrees("TERM_TORN", term::TORN as f64);
+    agrees("TERM_TORN_COUNT", term::TORN_COUNT as f64);
+    assert!((term::TORN_COUNT as u64) < slot::ENERGY_TERMS);
+}
+
+#[test]
+fn terms_do_not_overlap() {
+    let places = [
+        (term::EMITTED, 1),
+        (term::REFLECTED, 1),
+        (term::MISSED, 1),
+        (term::EXTINGUISHED, 3),
+        (term::LEFT, 3),
+        (term::LANDED, 3),
+        (term::TORN, 1),
+        (term::TORN_COUNT, 1),
+    ];
+    for pair in places.windows(2) {
+        assert_eq!(pair[0].0 + pair[0].1, pair[1].0);
+    }
+}
+
+#[test]
+fn a_workgroups_account_holds_what_it_notes() {
+    let module = module("passes/deposit.wgsl");
+    let places = array_length(&module, "account");
+    assert_eq!(places, term::LEFT + 3, "terms up to what leaves the maps");
+}
+
+#[test]
+fn figures_of_queues_and_maps_agree() {
+    agrees("MOST_GROUPS", f64::from(slot::MOST_GROUPS));
+    agrees("QUEUE_HEAD", slot::QUEUE_HEAD_WORDS as f64);
+    agrees("QUEUE_COUNT", slot::QUEUE_HEAD_WORDS as f64 - 1.0);
+    agrees("EMPTY_DEPTH", level_map::EMPTY_DEPTH);
+    let camera = module("passes/camera_irradiance.wgsl");
+    assert_eq!(array_length(&camera, "suns"), MAX_SUNS);
+    assert!(caustica::config::Limits::default().max_lights <= MAX_SUNS);
+    let landed_module = module("passes/landed.wgsl");
+    let each = constant(&landed_module, "TEXELS_EACH").unwrap() as u32;
+    let side = array_length(&landed_module, "sums") as u32;
+    assert_eq!(each * side, landed::TEXELS_PER_GROUP);
+    assert_eq!(size(&landed_module, "landed_main"), [side, 1, 1]);
+}
+
+#[test]
+fn receivers_have_the_size_that_slots_reckon_with() {
+    let size_of = |name: &str| {
+        passes::gpu_data::LAYOUTS
+            .iter()
+            .find(|(wgsl, _, _)| *wgsl == name)
+            .map(|(_, size, _)| *size as u64)
+    };
+    assert_eq!(size_of("Receiver"), Some(light::RECEIVER_BYTES));
+    let facts = facts();
+    let waves = facts.surface.components.len() as u64;
+    assert_eq!(
+        Some(slot::Slot::Waves.bytes(&facts) / waves),
+        size_of("Wave")
+    );
+    let objects = facts.objects.len() as u64;
+    assert_eq!(
+        Some(slot::Slot::Instances.bytes(&facts) / objects),
+        size_of("Instance")
+    );
+}
+
+fn array_length(module: &Module, variable: &str) -> usize {
+    let (_, found) = module
+        .ir
+        .global_variables
+        .iter()
+        .find(|(_, v)| v.name.as_deref() == Some(variable))
+        .unwrap_or_else(|| panic!("no `{variable}`"));
+    match module.ir.types[found.ty].inner {
+        TypeInner::Array {
+            size: naga::ArraySize::Constant(n),
+            ..
+        } => n.get() as usize,
+        _ => panic!("`{variable}` is no array of fixed length"),
+    }
+}
+
+fn size(module: &Module, entry: &str) -> [u32; 3] {
+    let found = module.ir.entry_points.iter().find(|e| e.name == entry);
+    found
+        .unwrap_or_else(|| panic!("no `{entry}`"))
+        .workgroup_size
+}
+
+/// Odd sizes everywhere: whoever divides by the wrong number is found out.
+fn facts() -> SceneFacts {
+    let resolved = scene_files::scene(json!({
+        "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 1.1 }] },
+        "floor": { "depth_m": 2, "size_m": [9, 7] },
+        "lights": [{ "kind": "sun", "elevation_deg": 50, "irradiance_w_m2": [1, 1, 1] }],
+        "objects": [{ "mesh": "box.obj", "translation_m": [0, -1, 0] }],
+        "camera": { "position_m": [0, 3, 2], "target_m": [0, -1, 0] },
+        "quality": { "water_cells": 131, "map_texels": 333, "level_map_texels": 64 },
+        "output": { "kind": "view", "width": 101, "height": 67 }
+    }));
+    SceneFacts::of(&resolved).unwrap()
+}
+
+/// (workgroups × size of one, invocations needed) of the first step of a pass, as plain products.
+fn check_cover(pass: &PassDesc, facts: &SceneFacts, run: Run<'_>, tile: [u32; 2], needs: [u32; 2]) {
+    let module = module(&format!("passes/{}.wgsl", pass.name));
+    let steps = (pass.steps)(facts, run);
+    assert!(!steps.is_empty(), "{}", pass.name);
+    let Work::Compute(Groups::Direct(groups)) = steps[0].work else {
+        panic!("{} does not dispatch", pass.name);
+    };
+    let size = size(&module, steps[0].entry);
+    assert_eq!(
+        size.iter().product::<u32>(),
+        tile[0] * tile[1],
+        "{}",
+        pass.name
+    );
+    for axis in 0..2 {
+        let covered = groups[axis] * tile[axis];
+        assert!(
+            covered >= needs[axis],
+            "{}: {covered} on axis {axis}",
+            pass.name
+        );
+        assert!(
+            covered < needs[axis] + tile[axis],
+            "{}: {covered}",
+            pass.name
+        );
+    }
+    assert_eq!(groups[2], 1);
+}
+
+#[test]
+fn dispatches_cover_their_work() {
+    let facts = facts();
+    let sun = Run::Sun {
+        index: 0,
+        wide_sums: false,
+    };
+    let vertices = [132, 132];
+    for pass in [
+        &passes::surface::PASS,
+        &passes::beams::PASS,
+        &passes::hits::PASS,
+    ] {
+        check_cover(pass, &facts, sun, [64, 1], vertices);
+    }
+    check_cover(&passes::deposit::PASS, &facts, sun, [8, 8], [131, 131]);
+    let texels = slot::flux_texels(&facts);
+    assert_eq!(texels, slot::floor_texels(&facts) + 64 * 64);
+    let band = Run::Band {
+        first_row: 0,
+        rows: 67,
+    };
+    for pass in passes::ALL.iter().filter(|p| p.repeat == Repeat::Band) {
+        check_cover(pass, &facts, band, [8, 8], [101, 67]);
+    }
+}
+
+#[test]
+fn sums_over_texels_cover_all_of_them() {
+    let facts = facts();
+    let sun = Run::Sun {
+        index: 0,
+        wide_sums: false,
+    };
+    let groups = |work: Work| match work {
+        Work::Compute(Groups::Direct(groups)) => groups.iter().product::<u32>(),
+        _ => panic!("no dispatch"),
+    };
+    let landed = (landed::PASS.steps)(&facts, sun);
+    let needed = slot::flux_texels(&facts).div_ceil(landed::TEXELS_PER_GROUP);
+    assert_eq!(groups(landed[0].work), needed);
+    let side = size(&module("passes/irradiance.wgsl"), "irradiance_main")[0];
+    let irradiance = (passes::irradiance::PASS.steps)(&facts, sun);
+    assert_eq!(irradiance.len(), 2, "the floor and one object");
+    let texels = [slot::floor_texels(&facts), slot::object_texels(&facts)];
+    for (step, texels) in irradiance.iter().zip(texels) {
+        assert!(groups(step.work) * side >= texels);
+    }
+}
+
+#[test]
+fn every_entry_point_is_run_by_a_step() {
+    let facts = facts();
+    let level_box = facts.suns[0].boxes[0].clone().unwrap();
+    for pass in passes::ALL {
+        let run = match pass.repeat {
+            Repeat::LevelMap => Run::LevelMap {
+                level_box: &level_box,
+                arena_offset: 0,
+                first_triangle: 0,
+                triangles: 12,
+            },
+            Repeat::Sun => Run::Sun {
+                index: 0,
+                wide_sums: false,
+            },
+            Repeat::Band => Run::Band {
+                first_row: 0,
+                rows: 67,
+            },
+        };
+        let module = module(&format!("passes/{}.wgsl", pass.name));
+        let steps = (pass.steps)(&facts, run);
+        for entry in &module.ir.entry_points {
+            let run = steps.iter().any(|step| step.entry == entry.name);
+            let drawn = entry.stage == naga::ShaderStage::Fragment;
+            assert!(run || drawn, "{} of {}", entry.name, pass.name);
+        }
+        for step in &steps {
+            let found = module.bindings(pass.name, step.entry).unwrap();
+            for (name, bytes) in &step.uniforms {
+                if let Some(bound) = found.iter().find(|b| b.name == *name) {
+                    let caustica::gpu::shader::Access::Uniform(size) = bound.access else {
+                        panic!("{name} of {} is no uniform", step.entry);
+                    };
+                    assert_eq!(bytes.len() as u32, size, "{name} of {}", step.entry);
+                }
+            }
+            for bound in &found {
+                if matches!(bound.access, caustica::gpu::shader::Access::Uniform(_)) {
+                    let brought = step.uniforms.iter().any(|(name, _)| *name == bound.name);
+                    assert!(brought, "{} of {}", bound.name, step.entry);
+                }
+            }
+        }
+    }
+}
