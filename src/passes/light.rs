@@ -15,8 +15,8 @@ const BEAM_COUNTS: f64 = 1_073_741_824.0;
 const WIDE_BEAM_COUNTS: f64 = 1_099_511_627_776.0;
 /// Fewest counts of the largest beam in narrow sums: beams that are all alike all round the same way, by up to half a count.
 const FINE_BEAM_COUNTS: f64 = 65_536.0;
-/// Fewest counts of an evenly lit texel in narrow sums.
-const FINE_TEXEL_COUNTS: f64 = 16_384.0;
+/// Fewest counts of an evenly lit texel in narrow sums: few beams reach it, each rounded by up to half a count.
+const FINE_TEXEL_COUNTS: f64 = 4096.0;
 /// Where a narrow sum wraps.
 const WRAP_COUNTS: f64 = 4_294_967_296.0;
 /// Times an evenly lit texel's flux that a narrow sum holds.

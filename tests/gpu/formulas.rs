@@ -21,11 +21,15 @@ const SAMPLES: usize = 20_000;
 #[test]
 fn every_formula_is_within_its_tolerance() {
     let renderer = renderer();
+    let mut failed = Vec::new();
     for twin in registry::all() {
         let error = twin_error(renderer.gpu(), renderer.sources(), twin, SAMPLES).unwrap();
         println!("{}: {error:.3} of what is allowed", twin.name);
-        assert!(error <= 1.0, "{}: {error}", twin.name);
+        if error > 1.0 {
+            failed.push((twin.name, error));
+        }
     }
+    assert!(failed.is_empty(), "{failed:?}");
 }
 
 #[test]

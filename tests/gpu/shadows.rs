@@ -166,8 +166,8 @@ fn wavy(mesh: &str, scale: f64) -> Value {
 
 fn truth(scene: &Value) -> ReferenceMap {
     let settings = ReferenceSettings {
-        target_error: Some(3e-3),
-        max_rays: 60_000_000,
+        target_error: Some(1e-3),
+        max_rays: 250_000_000,
         ..ReferenceSettings::default()
     };
     reference::irradiance_map(&scene_files::scene(scene.clone()), &settings, &|_| {}).unwrap()
