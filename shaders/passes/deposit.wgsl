@@ -110,6 +110,9 @@ fn deposit_texels(target_map: Target, b: Beam, arriving: vec3f, first: u32, stri
     return beside;
 }
 
+// What the lanes of a workgroup brought beside the maps; summed before it is rounded, since each lane's part is tiny.
+var<workgroup> left_sums: array<vec3f, 64>;
+
 // Some workgroups (along y) per wide or flat footprint (along x).
 @compute @workgroup_size(64)
 fn deposit_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
@@ -128,7 +131,12 @@ fn deposit_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
             left += arriving * deposit_texels(target_map, b, arriving, lane, groups.y * 64u);
         }
     }
-    note_losses(Losses(0.0, vec3f(0.0), left));
+    left_sums[invocation] = left;
+    for (var stride = 32u; stride > 0u; stride = stride >> 1u) {
+        workgroupBarrier();
+        if invocation < stride { left_sums[invocation] += left_sums[invocation + stride]; }
+    }
+    if invocation == 0u { note_losses(Losses(0.0, vec3f(0.0), left_sums[0])); }
     workgroupBarrier();
     flush_account(invocation);
 }

@@ -2,7 +2,7 @@
 //
 // One u32 per texel and channel holds 1024 times the flux of an evenly lit texel. Where a focus passes that, the sum wraps, what
 // landed is short by a whole 2³² counts, the host sees it in the energy account and runs the sun again with WIDE_SUMS: 64 bits
-// in two words, which nothing can fill (2³⁰ counts at most per deposit).
+// in two words, which nothing can fill (2⁴⁰ counts at most per beam). Where u32 would be too coarse the host starts with those.
 
 override WIDE_SUMS: bool = false;
 
@@ -20,14 +20,17 @@ const TERM_TORN: u32 = 12u;       // flux of beams that straddle receivers to th
 const TERM_TORN_COUNT: u32 = 13u; // how many those are
 
 fn add_flux(texel: u32, channel: u32, channels: u32, counts: f32) {
-    let whole = u32(counts + 0.5);
     let place = texel * channels + channel;
     if !WIDE_SUMS {
-        atomicAdd(&flux[place], whole);
+        atomicAdd(&flux[place], u32(counts + 0.5));
         return;
     }
-    let before = atomicAdd(&flux[2u * place], whole);
-    if before + whole < before { atomicAdd(&flux[2u * place + 1u], 1u); }
+    // 4294967040 is the largest f32 below 2³².
+    let high = u32(floor(counts / 4294967296.0));
+    let low = u32(clamp(counts - f32(high) * 4294967296.0 + 0.5, 0.0, 4294967040.0));
+    let before = atomicAdd(&flux[2u * place], low);
+    let carry = select(0u, 1u, before + low < before);
+    if high + carry > 0u { atomicAdd(&flux[2u * place + 1u], high + carry); }
 }
 
 // The sum of a texel and channel, in counts.

@@ -9,8 +9,14 @@ use crate::scene::facts::{SceneFacts, SunFacts};
 pub const RECEIVER_BYTES: u64 = size_of::<Receiver>() as u64;
 /// Footprints of more texels than this get workgroups of their own.
 const WIDE_TEXELS: u32 = 1024;
-/// Counts that the largest possible beam makes: 2³⁰, so that a deposit fits u32 with room for rounding.
+/// Counts that the largest possible beam makes in narrow sums: 2³⁰, so that a deposit fits u32 with room for rounding.
 const BEAM_COUNTS: f64 = 1_073_741_824.0;
+/// The same in wide sums: 2⁴⁰, so that all beams of the finest grid (2 · 2048²) fit 63 bits together.
+const WIDE_BEAM_COUNTS: f64 = 1_099_511_627_776.0;
+/// Fewest counts of the largest beam in narrow sums: beams that are all alike all round the same way, by up to half a count.
+const FINE_BEAM_COUNTS: f64 = 65_536.0;
+/// Fewest counts of an evenly lit texel in narrow sums: few beams reach it, each rounded by up to half a count.
+const FINE_TEXEL_COUNTS: f64 = 4096.0;
 /// Where a narrow sum wraps.
 const WRAP_COUNTS: f64 = 4_294_967_296.0;
 /// Times an evenly lit texel's flux that a narrow sum holds.
@@ -62,24 +68,36 @@ pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
 
 /// Counts per m² in the flux sums; a power of two.
 ///
-/// Wide sums take the largest beam at 2³⁰. Narrow ones leave room for [`NARROW_HEADROOM`] times the flux of an evenly lit texel.
+/// Wide sums take the largest beam at 2⁴⁰. Narrow ones take it at 2³⁰ at most and leave room for [`NARROW_HEADROOM`] times the
+/// flux of an evenly lit texel.
 pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
-    let beam = BEAM_COUNTS / largest_beam_m2(facts, &facts.suns[index]);
+    let beam_m2 = largest_beam_m2(facts, &facts.suns[index]);
     if wide_sums {
-        return beam.log2().floor().exp2();
+        return (WIDE_BEAM_COUNTS / beam_m2).log2().floor().exp2();
     }
+    let texel_m2 = texel_fluxes_m2(facts, index).fold(0.0, f64::max);
+    let narrow = WRAP_COUNTS / (NARROW_HEADROOM * texel_m2);
+    narrow.min(BEAM_COUNTS / beam_m2).log2().floor().exp2()
+}
+
+/// Flux of an evenly lit texel of each receiver's map under unit irradiance, m².
+fn texel_fluxes_m2(facts: &SceneFacts, index: usize) -> impl Iterator<Item = f64> {
     let sun = &facts.suns[index];
-    let floor_texel_m2 = facts.floor_map.map_or(0.0, |map| {
+    let floor = facts.floor_map.map(|map| {
         sun.to_light.y * map.rect.size().x * map.rect.size().y / f64::from(map.width * map.height)
     });
-    let texel_m2 = sun
-        .boxes
-        .iter()
-        .flatten()
-        .map(|b| 1.0 / b.density_per_flux)
-        .fold(floor_texel_m2, f64::max);
-    let narrow = WRAP_COUNTS / (NARROW_HEADROOM * texel_m2);
-    narrow.min(beam).log2().floor().exp2()
+    let objects = sun.boxes.iter().flatten();
+    floor
+        .into_iter()
+        .chain(objects.map(|b| 1.0 / b.density_per_flux))
+}
+
+/// Whether narrow sums would be too coarse for a sun from the start: very many beams on a texel, or texels under a beam.
+pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
+    let scale = flux_scale(facts, index, false);
+    let texel_m2 = texel_fluxes_m2(facts, index).fold(f64::INFINITY, f64::min);
+    scale * largest_beam_m2(facts, &facts.suns[index]) < FINE_BEAM_COUNTS
+        || scale * texel_m2 < FINE_TEXEL_COUNTS
 }
 
 /// Whether narrow sums of a sun have wrapped: what landed is then short by at least one whole 2³² counts.

@@ -92,9 +92,9 @@ pub const TWINS: [Twin; 11] = [
             outside_critical(a).then(|| [fresnel::fresnel_reflectance(a[0], a[1]), 0.0, 0.0, 0.0])
         },
         tolerance: tolerance(
-            2e-5,
+            1e-4,
             0.0,
-            "near the critical angle cos θ_t is a root of a rounded difference: √ε · 0.05",
+            "near the critical angle cos θ_t is a root of a rounded difference, 3ε/(2 cos θ_t) off at cos θ_t = 0.01, and the p wave takes that times 2/n, up to 8; seen: 8·10⁻⁵ in 20 000 samples",
         ),
     },
     Twin {
@@ -106,7 +106,7 @@ pub const TWINS: [Twin; 11] = [
             outside_critical(a).then(|| [fresnel::fresnel_transmittance(a[0], a[1]), 0.0, 0.0, 0.0])
         },
         tolerance: tolerance(
-            2e-5,
+            1e-4,
             2e-6,
             "as the reflectance; towards grazing the error is relative",
         ),

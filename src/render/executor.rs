@@ -285,7 +285,8 @@ impl Renderer {
         Ok(result)
     }
 
-    /// Follows one sun and returns its raw account; with narrow flux sums, and once more with wide ones if those wrapped.
+    /// Follows one sun and returns its raw account; with narrow flux sums where those are fine enough, and once more with wide
+    /// ones if they wrapped.
     fn run_sun(
         &mut self,
         facts: &SceneFacts,
@@ -298,7 +299,8 @@ impl Renderer {
             return Ok(Vec::new());
         };
         let mut account = Vec::new();
-        for wide_sums in [false, true] {
+        let too_coarse = light::needs_wide_sums(facts, index);
+        for wide_sums in [false, true].into_iter().skip(usize::from(too_coarse)) {
             let started = Recording::start(time_ms);
             if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
                 self.gpu.queue.write_buffer(
@@ -331,6 +333,7 @@ impl Renderer {
             if !wide_sums
                 && light::has_wrapped(facts, index, collect::missing_m2(facts, index, &account))
             {
+                self.wide_sum_reruns += 1;
                 continue;
             }
             // Only sums that are known to be whole join the maps.

@@ -83,6 +83,7 @@ pub struct Renderer {
     arena: Option<wgpu::Buffer>,
     geometry: Option<geometry::Geometry>,
     memory_budget_bytes: u64,
+    wide_sum_reruns: u64,
 }
 
 impl Renderer {
@@ -116,6 +117,7 @@ impl Renderer {
             arena: None,
             geometry: None,
             memory_budget_bytes: config.memory_budget_mib << 20,
+            wide_sum_reruns: 0,
         })
     }
 
@@ -229,6 +231,11 @@ impl Renderer {
     /// The level-map cache since the start (hits, misses, evictions) and now (entries, bytes).
     pub fn level_map_cache(&self) -> CacheStats {
         self.level_maps.stats()
+    }
+
+    /// How often since the start a sun was followed again because its narrow flux sums had wrapped.
+    pub fn wide_sum_reruns(&self) -> u64 {
+        self.wide_sum_reruns
     }
 
     /// Bytes held on the GPU between frames: free pooled buffers, level maps, geometry.

@@ -283,3 +283,28 @@ fn every_entry_point_is_run_by_a_step() {
         }
     }
 }
+
+#[test]
+fn buffers_hold_at_least_one_element() {
+    // Lists may be empty; what is bound must not be.
+    let resolved = scene_files::scene(json!({
+        "floor": { "depth_m": 2, "size_m": [9, 7] },
+        "camera": { "position_m": [0, 3, 2], "target_m": [0, -1, 0] }
+    }));
+    let facts = SceneFacts::of(&resolved).unwrap();
+    for (path, module) in pass_modules() {
+        for (_, variable) in module.ir.global_variables.iter() {
+            let Some(slot) = variable.name.as_deref().and_then(slot::Slot::by_name) else {
+                continue;
+            };
+            if let TypeInner::Array { stride, .. } = module.ir.types[variable.ty].inner {
+                // The planner gives no buffer less than 16 bytes.
+                let bytes = slot.bytes(&facts).max(16);
+                assert!(
+                    bytes >= u64::from(stride),
+                    "{slot:?} in {path}: {bytes} bytes"
+                );
+            }
+        }
+    }
+}

@@ -1,3 +1,20 @@
-//! Tests that need an adapter (software Vulkan will do).
+//! Tests that need an adapter (software Vulkan will do). None is skipped: without an adapter they fail.
 
-mod smoke;
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(
+    clippy::needless_pass_by_value,
+    reason = "`json!` literals are passed as they are"
+)]
+
+mod determinism;
+mod energy;
+mod flat;
+mod footprint;
+mod formulas;
+mod harness;
+#[path = "../support/scene_files.rs"]
+mod scene_files;
+mod shadows;
+mod sine_pool;
+mod symmetry;
+mod wide_sums;

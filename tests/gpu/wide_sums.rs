@@ -1,0 +1,74 @@
+//! A focus so strong that narrow flux sums wrap: the sun is followed again with wide ones, and nothing is lost.
+
+use serde_json::{Value, json};
+
+use super::harness::{Map, renderer};
+use super::symmetry::pooled;
+
+/// Two crossed sines with the same focal depth under a vertical sun, on a map of ±5 cm around the focus.
+///
+/// A crest of height A and wave number k focuses where 1 = depth · A k² (1 − 1/n): thin-lens refraction.
+fn focus(side: u32, cells: u32) -> Value {
+    let k = std::f64::consts::TAU / 1.0;
+    let depth = 2.0;
+    let amplitude = 1.0 / (depth * k * k * (1.0 - 1.0 / 1.333));
+    json!({
+        "water": { "waves": [
+            { "kind": "sine", "amplitude_m": amplitude, "wavelength_m": 1.0, "direction_deg": 0, "phase_deg": 90 },
+            { "kind": "sine", "amplitude_m": amplitude, "wavelength_m": 1.0, "direction_deg": 90, "phase_deg": 90 }
+        ] },
+        "floor": { "depth_m": depth, "size_m": [4, 4] },
+        "lights": [{ "kind": "sun", "elevation_deg": 90, "irradiance_w_m2": [1, 1, 1] }],
+        "quality": { "water_cells": cells },
+        "output": { "kind": "irradiance_map", "receiver": "floor",
+                    "min_m": [-0.05, -0.05], "max_m": [0.05, 0.05], "width": side, "height": side }
+    })
+}
+
+fn reruns() -> u64 {
+    renderer().wide_sum_reruns()
+}
+
+#[test]
+fn a_focus_that_overflows_narrow_sums_loses_nothing() {
+    let before = reruns();
+    let fine = Map::of(focus(512, 512));
+    let brightest = fine.values().iter().copied().fold(0.0, f64::max);
+    println!(
+        "brightest texel {brightest:.0} times the sun, closure {:.1e}, {} reruns",
+        fine.closure(),
+        reruns() - before
+    );
+    assert!(brightest > 1024.0, "{brightest} is no focus");
+    assert!(reruns() > before, "narrow sums took it");
+    assert!(fine.closure() <= 1e-5, "{:?}", fine.stats.energy);
+    let on_map = fine.mean(0) * 0.01;
+    let landed = fine.stats.energy[0].landed_w[0];
+    assert!((on_map / landed - 1.0).abs() <= 1e-5, "{on_map} {landed}");
+
+    // Texels 64 times as wide hold the same light, and need no rerun.
+    let before = reruns();
+    let coarse = Map::of(focus(8, 512));
+    assert_eq!(
+        reruns(),
+        before,
+        "{:?}",
+        coarse.values().iter().copied().fold(0.0, f64::max)
+    );
+    let blocks = pooled(&fine.texels, 512, 64);
+    let mean = coarse.mean(0);
+    for (block, texel) in blocks.iter().zip(&coarse.texels) {
+        let error = (block[0] - texel[0]).abs() / mean;
+        assert!(error <= 1e-3, "{block:?} and {texel:?}, mean {mean}");
+    }
+}
+
+#[test]
+fn an_even_floor_needs_no_wide_sums() {
+    let before = reruns();
+    let mut scene = focus(64, 64);
+    scene["water"] = json!({});
+    let map = Map::of(scene);
+    assert!(map.closure() <= 1e-5);
+    assert_eq!(reruns(), before);
+}
