@@ -96,10 +96,10 @@ impl Renderer {
 
     pub(super) fn upload(&self, facts: &SceneFacts, buffers: &FrameBuffers) {
         let write = |slot: Slot, bytes: &[u8]| {
-            if let Some(buffer) = buffers.by_name.get(slot_name(slot)) {
-                if !bytes.is_empty() {
-                    self.gpu.queue.write_buffer(buffer, 0, bytes);
-                }
+            if let Some(buffer) = buffers.by_name.get(slot_name(slot))
+                && !bytes.is_empty()
+            {
+                self.gpu.queue.write_buffer(buffer, 0, bytes);
             }
         };
         let waves: Vec<Wave> = facts
@@ -114,13 +114,13 @@ impl Renderer {
             })
             .collect();
         write(Slot::Waves, bytemuck::cast_slice(&waves));
-        if let Some(geometry) = &self.geometry {
-            if buffers.by_name.contains_key(slot_name(Slot::Instances)) {
-                write(
-                    Slot::Instances,
-                    bytemuck::cast_slice(&geometry.instances(facts)),
-                );
-            }
+        if let Some(geometry) = &self.geometry
+            && buffers.by_name.contains_key(slot_name(Slot::Instances))
+        {
+            write(
+                Slot::Instances,
+                bytemuck::cast_slice(&geometry.instances(facts)),
+            );
         }
         let all: Vec<Receiver> = (0..facts.suns.len())
             .flat_map(|sun| self.receivers(facts, sun))
