@@ -90,16 +90,19 @@ fn deposit_texels(target_map: Target, b: Beam, arriving: vec3f, first: u32, stri
     let box = texel_box(target_map, b.uv[0], b.uv[1], b.uv[2]);
     let extent = box.last - box.first + 1;
     let count = u32(extent.x) * u32(extent.y);
-    let base = vec2f(box.first);
-    let p = b.uv[0] - base;
-    let q = b.uv[1] - base;
-    let s = b.uv[2] - base;
-    let low = min(p, min(q, s));
-    let high = max(p, max(q, s));
-    let per_area = 2.0 / ((q.x - p.x) * (s.y - p.y) - (q.y - p.y) * (s.x - p.x));
+    let e1 = b.uv[1] - b.uv[0];
+    let e2 = b.uv[2] - b.uv[0];
+    let per_area = 2.0 / (e1.x * e2.y - e1.y * e2.x);
     var beside = 0.0;
     for (var i = first; i < count; i += stride) {
         let texel = box.first + vec2i(i32(i) % extent.x, i32(i) / extent.x);
+        // Everything is counted from the texel: neighbouring beams then round alike and leave no seam.
+        let base = vec2f(texel);
+        let p = b.uv[0] - base;
+        let q = b.uv[1] - base;
+        let s = b.uv[2] - base;
+        let low = min(p, min(q, s));
+        let high = max(p, max(q, s));
         let row = cell_bounds(texel.y, size.y, base.y, low.y, high.y);
         let column = cell_bounds(texel.x, size.x, base.x, low.x, high.x);
         let edges = clip_to_row(p, q, s, row.x, row.y);

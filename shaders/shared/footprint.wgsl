@@ -34,9 +34,13 @@ struct RowEdges {
     dy: vec3f,
 }
 
-fn edge_x(p: vec2f, q: vec2f, y: f32) -> f32 {
-    let slope = (q.x - p.x) / (q.y - p.y);
-    let x = select(p.x, p.x + (y - p.y) * slope, q.y != p.y);
+// x of an edge at height y, always counted from its lower end: neighbours that share the edge get the same number, so that what
+// rounding takes from one it gives to the other.
+fn edge_x(a: vec2f, b: vec2f, y: f32) -> f32 {
+    let swapped = b.y < a.y || (b.y == a.y && b.x < a.x);
+    let p = select(a, b, swapped);
+    let q = select(b, a, swapped);
+    let x = select(p.x, p.x + (y - p.y) * ((q.x - p.x) / (q.y - p.y)), q.y != p.y);
     return clamp(x, min(p.x, q.x), max(p.x, q.x));
 }
 
