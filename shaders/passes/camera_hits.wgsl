@@ -26,8 +26,8 @@ struct Ray {
 }
 
 fn pixel_ray(x: u32, y: u32) -> Ray {
-    let sx = (2.0 * (f32(x) + 0.5) / f32(view.width)) - 1.0;
-    let sy = 1.0 - (2.0 * (f32(y) + 0.5) / f32(view.height));
+    let sx = (2.0 * (f32(x) + 0.5 + view.sample_offset.x) / f32(view.width)) - 1.0;
+    let sy = 1.0 - (2.0 * (f32(y) + 0.5 + view.sample_offset.y) / f32(view.height));
     let offset = view.right.xyz * sx + view.up.xyz * sy;
     if view.orthographic == 1u { return Ray(view.eye.xyz + offset, view.forward.xyz); }
     return Ray(view.eye.xyz, normalize(view.forward.xyz + offset));

@@ -8,6 +8,7 @@
 #import "shared/flux.wgsl"
 #import "shared/footprint.wgsl"
 #import "shared/beam_triangle.wgsl"
+#import "shared/grid.wgsl"
 #import "shared/grid_beam.wgsl"
 #import "shared/account.wgsl"
 #import "shared/queue.wgsl"

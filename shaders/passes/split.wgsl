@@ -14,18 +14,15 @@
 #import "shared/flux.wgsl"
 #import "shared/footprint.wgsl"
 #import "shared/beam_triangle.wgsl"
+#import "shared/grid.wgsl"
 #import "shared/account.wgsl"
 #import "shared/queue.wgsl"
 
 @group(0) @binding(6) var<storage, read> split_queue: array<u32>;
 
-// Corner `k` of the beam, in cells; the same triangles as in shared/grid_beam.wgsl.
+// Corner `k` of the beam, in cells.
 fn beam_corner(cell: vec2u, half: u32, k: u32) -> vec2f {
-    let even_corners = array<vec3u, 2>(vec3u(0u, 1u, 3u), vec3u(0u, 3u, 2u));
-    let odd_corners = array<vec3u, 2>(vec3u(0u, 1u, 2u), vec3u(1u, 3u, 2u));
-    var triple = even_corners[half];
-    if ((cell.x + cell.y) & 1u) == 1u { triple = odd_corners[half]; }
-    return vec2f(cell + vec2u(triple[k] & 1u, triple[k] >> 1u));
+    return vec2f(cell + corner_of(beam_corners(cell, half), k));
 }
 
 fn split_beam(corners: mat3x2f) -> Beam {

@@ -9,9 +9,13 @@ fn note_term(term: u32, value_m2: f32) {
 
 fn note_losses(losses: Losses) {
     note_term(TERM_MISSED, losses.missed);
-    for (var channel = 0u; channel < light.channels; channel++) {
-        note_term(TERM_EXTINGUISHED + channel, losses.extinguished[channel]);
-        note_term(TERM_LEFT + channel, losses.left[channel]);
+    note_term(TERM_EXTINGUISHED, losses.extinguished.x);
+    note_term(TERM_LEFT, losses.left.x);
+    if light.channels == 3u {
+        note_term(TERM_EXTINGUISHED + 1u, losses.extinguished.y);
+        note_term(TERM_EXTINGUISHED + 2u, losses.extinguished.z);
+        note_term(TERM_LEFT + 1u, losses.left.y);
+        note_term(TERM_LEFT + 2u, losses.left.z);
     }
 }
 

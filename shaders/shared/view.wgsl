@@ -27,9 +27,8 @@ struct View {
     sky_transmittance: f32,
     sky_path_factor: f32,
     receiver_count: u32,  // per sun, floor included
-    pad_0: u32,
-    pad_1: u32,
-    pad_2: u32,
+    sample_index: u32,    // samples that the picture already holds
+    sample_offset: vec2f, // of the ray from the pixel's middle, pixels
 }
 
 @group(0) @binding(0) var<uniform> view: View;

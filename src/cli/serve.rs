@@ -1,5 +1,9 @@
 //! `caustica serve`: the HTTP service.
 
+use std::io::IsTerminal as _;
+
+use tracing_subscriber::EnvFilter;
+
 use super::error::CliError;
 use crate::config::{Limits, RenderConfig, ServeConfig};
 
@@ -9,10 +13,26 @@ use crate::config::{Limits, RenderConfig, ServeConfig};
 ///
 /// [`CliError::Serve`] when the service cannot start or breaks off.
 pub fn run(render: RenderConfig, limits: Limits, serve: ServeConfig) -> Result<(), CliError> {
+    start_log(serve.log_json);
     tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
         .map_err(|error| CliError::Serve(error.to_string()))?
         .block_on(crate::http::serve(render, limits, serve))
         .map_err(|error| CliError::Serve(error.to_string()))
+}
+
+/// Logs to stderr from `info` up, or as the environment variable `RUST_LOG` says.
+fn start_log(json: bool) {
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info"));
+    let log = tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal());
+    // A second log in the same process, as in tests, keeps to the first one's form.
+    let _ = if json {
+        log.json().try_init()
+    } else {
+        log.try_init()
+    };
 }

@@ -34,7 +34,7 @@ pub(super) fn wanted_for_camera(facts: &SceneFacts) -> Result<String, String> {
 
 /// One invocation per pixel of a band.
 pub(super) fn pixel_step(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
-    let (Run::Band { first_row, rows }, Some(camera)) = (run, &facts.camera) else {
+    let (Run::Band { rows, .. }, Some(camera)) = (run, &facts.camera) else {
         return Vec::new();
     };
     vec![Step {
@@ -44,12 +44,21 @@ pub(super) fn pixel_step(entry: &'static str, facts: &SceneFacts, run: Run<'_>) 
             rows.div_ceil(8),
             1,
         ])),
-        uniforms: vec![("view", view_uniform(facts, first_row, rows))],
+        uniforms: vec![("view", view_uniform(facts, run))],
     }]
 }
 
 /// The uniform of a band.
-pub(super) fn view_uniform(facts: &SceneFacts, first_row: u32, rows: u32) -> Vec<u8> {
+fn view_uniform(facts: &SceneFacts, run: Run<'_>) -> Vec<u8> {
+    let Run::Band {
+        first_row,
+        rows,
+        offset,
+        sample_index,
+    } = run
+    else {
+        return Vec::new();
+    };
     let Some(camera) = &facts.camera else {
         return Vec::new();
     };
@@ -81,7 +90,8 @@ pub(super) fn view_uniform(facts: &SceneFacts, first_row: u32, rows: u32) -> Vec
         sky_transmittance: facts.sky_transmittance as f32,
         sky_path_factor: facts.sky_path_factor as f32,
         receiver_count: 1 + facts.objects.len() as u32,
-        ..View::default()
+        sample_index,
+        sample_offset: offset.map(|o| o as f32),
     };
     bytemuck::bytes_of(&view).to_vec()
 }

@@ -43,6 +43,10 @@ pub enum Run<'a> {
         first_row: u32,
         /// Number of rows.
         rows: u32,
+        /// Where in the pixel the rays go: away from its middle, in pixels.
+        offset: [f64; 2],
+        /// Samples that the picture already holds.
+        sample_index: u32,
     },
 }
 

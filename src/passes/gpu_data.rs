@@ -136,9 +136,8 @@ gpu_struct! {
         sky_transmittance: f32,
         sky_path_factor: f32,
         receiver_count: u32,
-        pad_0: u32,
-        pad_1: u32,
-        pad_2: u32,
+        sample_index: u32,
+        sample_offset: [f32; 2],
     }
 }
 

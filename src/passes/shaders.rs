@@ -36,6 +36,7 @@ pub fn embedded() -> ShaderSources {
         "shared/flux.wgsl",
         "shared/footprint.wgsl",
         "shared/geometry.wgsl",
+        "shared/grid.wgsl",
         "shared/grid_beam.wgsl",
         "shared/level_map_view.wgsl",
         "shared/level_maps.wgsl",

@@ -241,7 +241,7 @@ impl Slot {
             | Self::VisibleIrradiance
             | Self::Radiance => 16 * pixels,
             Self::Waves => 16 * facts.surface.components.len() as u64,
-            // Without objects one is bound all the same: a binding must hold an element.
+            // At least one: a binding may not be shorter than an element of its array.
             Self::Instances => 112 * facts.objects.len().max(1) as u64,
             Self::Receivers => super::light::RECEIVER_BYTES * (1 + facts.objects.len() as u64),
             Self::AllReceivers => {

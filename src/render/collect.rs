@@ -151,8 +151,9 @@ impl<'a> ViewLayers<'a> {
         match source {
             Slot::Radiance => {
                 self.outside_map += band.iter().filter(|v| v[3] != 0.0).count() as u64;
+                let per_sample = 1.0 / (self.facts.quality.pixel_samples as f32).powi(2);
                 fill(self.layers.get_mut(&LayerName::Radiance), &|v| {
-                    [v[0], v[1], v[2], 1.0]
+                    [v[0] * per_sample, v[1] * per_sample, v[2] * per_sample, 1.0]
                 });
             }
             Slot::VisibleNormal => {

@@ -14,9 +14,9 @@ use crate::passes::level_map::EMPTY_DEPTH;
 use crate::passes::slot::{ENERGY_TERMS, Lifetime, Slot, WIDE_GROUPS, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
-use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
+use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::TimeStats;
 
 /// Bytes of one sun's energy account.
@@ -374,30 +374,38 @@ impl Renderer {
         let mut view = collect::ViewLayers::new(facts, width, height);
         let step = band_rows(width, height);
         for first_row in (0..height).step_by(step as usize) {
-            check_cancelled(cancel)?;
-            let started = Recording::start(&result.time_ms);
             let rows = step.min(height - first_row);
-            let mut encoder = self.encoder("band");
-            for pass in passes {
-                self.record(
-                    &mut encoder,
-                    pass,
-                    facts,
-                    Run::Band { first_row, rows },
-                    buffers,
-                    None,
-                )?;
-                self.submit_if_timed(pass, &mut encoder, &mut result.time_ms)?;
+            let pixels = u64::from(width) * u64::from(rows);
+            for sample in samples(facts) {
+                check_cancelled(cancel)?;
+                let started = Recording::start(&result.time_ms);
+                let run = Run::Band {
+                    first_row,
+                    rows,
+                    offset: sample.offset,
+                    sample_index: sample.index,
+                };
+                let mut encoder = self.encoder("band");
+                for pass in passes {
+                    self.record(&mut encoder, pass, facts, run, buffers, None)?;
+                    self.submit_if_timed(pass, &mut encoder, &mut result.time_ms)?;
+                }
+                self.submit(encoder, started, &mut result.time_ms)?;
+                let started = Instant::now();
+                for slot in plan::awaited(facts) {
+                    let wanted = if slot == Slot::Radiance {
+                        sample.ends_radiance
+                    } else {
+                        sample.is_middle
+                    };
+                    if wanted {
+                        let band: Vec<[f32; 4]> =
+                            readback::read(&self.gpu, buffers.get(slot_name(slot)), 16 * pixels)?;
+                        view.add_band(slot, first_row, &band);
+                    }
+                }
+                result.time_ms.readback += ms_since(started);
             }
-            self.submit(encoder, started, &mut result.time_ms)?;
-            let started = Instant::now();
-            for slot in plan::awaited(facts) {
-                let pixels = u64::from(width) * u64::from(rows);
-                let band: Vec<[f32; 4]> =
-                    readback::read(&self.gpu, buffers.get(slot_name(slot)), 16 * pixels)?;
-                view.add_band(slot, first_row, &band);
-            }
-            result.time_ms.readback += ms_since(started);
         }
         let (layers, warnings) = view.finish()?;
         result.layers = layers;
@@ -430,7 +438,7 @@ impl Renderer {
         let layer = collect::finish_map(facts, &map, values, cosines.as_deref())?;
         result
             .layers
-            .insert(crate::scene::LayerName::Irradiance, layer);
+            .insert(LayerName::Irradiance, layer);
         Ok(())
     }
 
@@ -764,6 +772,51 @@ impl Renderer {
             })
             .collect()
     }
+}
+
+/// One round of rays through the pixels of a band.
+struct Sample {
+    offset: [f64; 2],
+    index: u32,
+    /// Goes through the pixels' middles: the layers that are not averaged come from it.
+    is_middle: bool,
+    /// The radiance sum is complete after it.
+    ends_radiance: bool,
+}
+
+/// The rounds of a view: an even grid in the pixel, and before it one through the middle where layers need it.
+fn samples(facts: &SceneFacts) -> Vec<Sample> {
+    let side = if facts.wants(LayerName::Radiance) {
+        facts.quality.pixel_samples
+    } else {
+        1
+    };
+    let count = side * side;
+    let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
+    let mut all: Vec<Sample> = (0..count)
+        .map(|index| Sample {
+            offset: [place(index % side), place(index / side)],
+            index,
+            is_middle: side == 1,
+            ends_radiance: index + 1 == count,
+        })
+        .collect();
+    let other_layers = facts
+        .layers
+        .iter()
+        .any(|&layer| layer != LayerName::Radiance);
+    if side > 1 && other_layers {
+        all.insert(
+            0,
+            Sample {
+                offset: [0.0; 2],
+                index: 0,
+                is_middle: true,
+                ends_radiance: false,
+            },
+        );
+    }
+    all
 }
 
 fn check_cancelled(cancel: &CancellationToken) -> Result<(), RenderError> {

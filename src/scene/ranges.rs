@@ -122,14 +122,31 @@ integers! {
     WaterCells = 2..=2048;
     /// `quality.map_texels`.
     MapTexels = 16..=4096;
-    /// `quality.level_map_texels`.
-    LevelMapTexels = 16..=2048;
     /// `quality.split_levels`.
     SplitLevels = 0..=4;
+    /// `quality.pixel_samples`.
+    PixelSamples = 1..=8;
     /// `width` and `height` of a view.
     ViewSide = 1..=16_384;
     /// `width` and `height` of a map.
     MapSide = 1..=8192;
+}
+
+/// `quality.level_map_texels`.
+#[derive(Clone, Copy, Debug)]
+pub struct LevelMapTexels;
+
+impl Integer for LevelMapTexels {
+    const MIN: u32 = 16;
+    const MAX: u32 = 2048;
+
+    fn accepted() -> String {
+        "a power of two, 16 … 2048".to_owned()
+    }
+
+    fn accepts(value: u32) -> bool {
+        (Self::MIN..=Self::MAX).contains(&value) && value.is_power_of_two()
+    }
 }
 
 /// `png_bits`.

@@ -6,8 +6,8 @@ use utoipa::ToSchema;
 
 use super::parse::{inner, integer, integer_of, optional_integer, rotation, tagged, wrong_type};
 use super::ranges::{
-    Integer, LevelMapTexels, LightIndex, MapSide, MapTexels, PngBits, ReceiverIndex, SplitLevels,
-    ViewSide, WaterCells,
+    Integer, LevelMapTexels, LightIndex, MapSide, MapTexels, PixelSamples, PngBits, ReceiverIndex,
+    SplitLevels, ViewSide, WaterCells,
 };
 use super::strict::carry;
 
@@ -368,7 +368,7 @@ pub struct Quality {
     #[serde(deserialize_with = "integer::<MapTexels, _>")]
     #[schema(minimum = 16, maximum = 4096)]
     pub map_texels: u32,
-    /// Texels along each side of a mesh's level map and of its irradiance map, 16 … 2048. Default 256.
+    /// Texels along each side of a mesh's level map and of its irradiance map, a power of two, 16 … 2048. Default 256.
     #[serde(deserialize_with = "integer::<LevelMapTexels, _>")]
     #[schema(minimum = 16, maximum = 2048)]
     pub level_map_texels: u32,
@@ -376,6 +376,11 @@ pub struct Quality {
     #[serde(deserialize_with = "integer::<SplitLevels, _>")]
     #[schema(minimum = 0, maximum = 4)]
     pub split_levels: u32,
+    /// Rays per pixel of a view along each side, 1 … 8. Default 1. Smooths edges; the camera's passes cost its square. Layers
+    /// other than radiance are never averaged: they are those of the pixel's middle.
+    #[serde(deserialize_with = "integer::<PixelSamples, _>")]
+    #[schema(minimum = 1, maximum = 8)]
+    pub pixel_samples: u32,
 }
 
 impl Default for Quality {
@@ -387,6 +392,7 @@ impl Default for Quality {
             map_texels: 512,
             level_map_texels: 256,
             split_levels: 2,
+            pixel_samples: 1,
         }
     }
 }

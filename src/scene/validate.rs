@@ -200,4 +200,5 @@ fn quality(findings: &mut Findings, quality: &Quality) {
     let level_map_texels = quality.level_map_texels;
     findings.integer::<ranges::LevelMapTexels>("/quality/level_map_texels", level_map_texels);
     findings.integer::<ranges::SplitLevels>("/quality/split_levels", quality.split_levels);
+    findings.integer::<ranges::PixelSamples>("/quality/pixel_samples", quality.pixel_samples);
 }

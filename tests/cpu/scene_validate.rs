@@ -20,7 +20,7 @@ pub(crate) fn full() -> Value {
             "mesh": "blake3:00", "translation_m": [0, -1, 0], "rotation": [0, 0, 0, 1], "scale": 0.5, "albedo": [1, 0, 0.5]
         }],
         "camera": { "position_m": [0, 2.5, 4], "target_m": [0, -1.5, 0], "up": [0, 1, 0], "vertical_fov_deg": 45 },
-        "quality": { "water_cells": 256, "map_texels": 512, "level_map_texels": 256, "split_levels": 2 },
+        "quality": { "water_cells": 256, "map_texels": 512, "level_map_texels": 256, "split_levels": 2, "pixel_samples": 1 },
         "output": {
             "kind": "view", "width": 960, "height": 540, "png_bits": 8, "exposure_ev": 0.0, "layers": ["radiance"]
         },
@@ -132,6 +132,7 @@ fn ranges() -> Vec<RangeRow> {
             both(15.0, 2049.0),
         ),
         ("/quality/split_levels", [0.0, 4.0], [None, Some(5.0)]),
+        ("/quality/pixel_samples", [1.0, 8.0], both(0.0, 9.0)),
         ("/output/width", [1.0, 16_384.0], both(0.0, 16_385.0)),
         ("/output/height", [1.0, 16_384.0], both(0.0, 16_385.0)),
         ("/output/png_bits", [8.0, 16.0], both(7.0, 17.0)),
@@ -263,7 +264,7 @@ fn schema_ranges_are_the_ones_that_are_enforced() {
         }
     }
     assert_eq!(
-        count, 10,
+        count, 11,
         "all integer fields say their range in the schema"
     );
 }

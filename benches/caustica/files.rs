@@ -1,0 +1,48 @@
+//! What files cost: the same frame in every format.
+
+use caustica::frame::Frame;
+use caustica::image::{EncodeError, Metadata, encode};
+use caustica::scene::{Encoding, ExrPixel, ImageFormat, ToneCurve};
+
+use crate::Effort;
+use crate::report::{Cell, Table};
+use crate::spread::repeat;
+
+/// Encodes a frame in each format.
+///
+/// # Errors
+/// When the frame cannot be written.
+pub fn encoding(frame: &Frame, effort: Effort) -> Result<Table, EncodeError> {
+    eprintln!("encoding …");
+    let mut table = Table::new(
+        "Files",
+        &format!(
+            "Teapot pool, {} × {}; ms, median (smallest..largest).",
+            frame.width, frame.height
+        ),
+        &["format", "encode", "MB"],
+    );
+    let metadata = Metadata::of(&frame.stats);
+    let formats = [
+        ("PNG, 8 bit", ImageFormat::Png, 8),
+        ("PNG, 16 bit", ImageFormat::Png, 16),
+        ("EXR, half, ZIP", ImageFormat::Exr, 8),
+    ];
+    for (name, format, png_bits) in formats {
+        let encoding = Encoding {
+            format,
+            png_bits,
+            exposure_ev: 0.0,
+            tone_curve: ToneCurve::default(),
+            exr_pixel: ExrPixel::Half,
+        };
+        let (files, times) = repeat(effort, || encode(frame, &encoding, &metadata))?;
+        let size = files.last().map_or(0, |file| file.bytes.len());
+        table.rows.push(vec![
+            Cell::text(name),
+            Cell::Runs(times),
+            Cell::figure(size as f64 / 1e6),
+        ]);
+    }
+    Ok(table)
+}

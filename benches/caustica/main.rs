@@ -1,0 +1,109 @@
+//! `make bench`: one run, one table of what Caustica costs here, also as `out/bench.md` and `out/bench.json`.
+//!
+//! `cargo bench --bench caustica -- --quick` is the short form. Every figure is the median of several warm runs with the
+//! smallest and the largest beside it, since other work on the machine shows first in the largest.
+//!
+//! `frames` measures rendering, `files` encoding, `service` HTTP; `spread` sums up runs, `memory` asks the system, `report`
+//! writes the table.
+
+mod files;
+mod frames;
+mod memory;
+mod report;
+mod service;
+mod spread;
+
+use std::error::Error;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use caustica::cli::summary;
+use caustica::config::RenderConfig;
+use caustica::render::Renderer;
+
+use report::Report;
+
+/// How long to measure.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Time for one row of a table, beyond the least number of runs.
+    pub row: Duration,
+    /// Least runs behind a figure.
+    pub least_runs: usize,
+    /// Time for one row of the table of the service.
+    pub service_row: Duration,
+    /// Relative L1 error at which the float64 truth is good enough.
+    pub truth_error: f64,
+}
+
+const FULL: Effort = Effort {
+    row: Duration::from_secs(4),
+    least_runs: 5,
+    service_row: Duration::from_secs(8),
+    truth_error: 1e-3,
+};
+
+const QUICK: Effort = Effort {
+    row: Duration::from_millis(200),
+    least_runs: 1,
+    service_row: Duration::from_millis(500),
+    truth_error: 1e-2,
+};
+
+fn main() -> ExitCode {
+    let mut quick = false;
+    for argument in std::env::args().skip(1) {
+        match argument.as_str() {
+            "--quick" => quick = true,
+            // What cargo adds.
+            "--bench" => {}
+            other => {
+                eprintln!("error: unknown option {other}; --quick is accepted");
+                return ExitCode::from(2);
+            }
+        }
+    }
+    match run(if quick { QUICK } else { FULL }, quick) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(effort: Effort, quick: bool) -> Result<(), Box<dyn Error>> {
+    let started = Instant::now();
+    let mut report = Report::default();
+    let mut renderer = Renderer::new(&RenderConfig::default())?;
+    let adapter = renderer.adapter();
+    report.fact("version", env!("CARGO_PKG_VERSION"));
+    report.fact("adapter", &summary::adapter(&adapter));
+    report.fact("software", &adapter.software.to_string());
+    report.fact("cores", &cores());
+    report.fact("form", if quick { "quick" } else { "full" });
+
+    let sines = frames::sine_pool(&mut renderer, effort)?;
+    // A renderer of its own for each scene, so that no memory of the one counts for the other.
+    drop(renderer);
+    let pool = frames::teapot_pool(&mut Renderer::new(&RenderConfig::default())?, effort)?;
+    report.tables.push(sines.table);
+    report.tables.push(pool.table);
+    report.tables.push(files::encoding(&pool.frame, effort)?);
+    drop(pool.frame);
+    let service = service::requests(effort)?;
+    report.tables.push(service.table);
+    let stages = [sines.memory, pool.memory, vec![service.memory]].concat();
+    report.tables.push(memory::table(&stages));
+
+    report.fact("took", &format!("{:.0} s", started.elapsed().as_secs_f64()));
+    println!("{}", report.markdown());
+    for path in report.write("out")? {
+        eprintln!("{}", path.display());
+    }
+    Ok(())
+}
+
+fn cores() -> String {
+    std::thread::available_parallelism().map_or_else(|_| "unknown".to_owned(), |n| n.to_string())
+}
