@@ -12,7 +12,7 @@ use crate::spread::repeat;
 ///
 /// # Errors
 /// When the frame cannot be written.
-pub fn encoding(frame: &Frame, effort: Effort) -> Result<Table, EncodeError> {
+pub(crate) fn encoding(frame: &Frame, effort: Effort) -> Result<Table, EncodeError> {
     eprintln!("encoding …");
     let mut table = Table::new(
         "Files",

@@ -24,14 +24,14 @@ const TEAPOT_POOL: &str = "scenes/teapot_pool.json";
 
 /// What the sine pool gave.
 #[derive(Debug)]
-pub struct SinePool {
+pub(crate) struct SinePool {
     pub table: Table,
     pub memory: Vec<Stage>,
 }
 
 /// What the teapot pool gave.
 #[derive(Debug)]
-pub struct TeapotPool {
+pub(crate) struct TeapotPool {
     pub table: Table,
     pub memory: Vec<Stage>,
     /// The largest frame.
@@ -39,7 +39,10 @@ pub struct TeapotPool {
 }
 
 /// The sine pool with ever finer water, and how far each is from the truth.
-pub fn sine_pool(renderer: &mut Renderer, effort: Effort) -> Result<SinePool, Box<dyn Error>> {
+pub(crate) fn sine_pool(
+    renderer: &mut Renderer,
+    effort: Effort,
+) -> Result<SinePool, Box<dyn Error>> {
     let mut rows = Vec::new();
     let mut memory = Vec::new();
     let mut frames = Vec::new();
@@ -91,7 +94,10 @@ pub fn sine_pool(renderer: &mut Renderer, effort: Effort) -> Result<SinePool, Bo
 }
 
 /// The teapot pool small and large, with an empty level-map cache and with a warm one.
-pub fn teapot_pool(renderer: &mut Renderer, effort: Effort) -> Result<TeapotPool, Box<dyn Error>> {
+pub(crate) fn teapot_pool(
+    renderer: &mut Renderer,
+    effort: Effort,
+) -> Result<TeapotPool, Box<dyn Error>> {
     let mut rows = Vec::new();
     let mut memory = Vec::new();
     let mut last = None;
@@ -150,7 +156,10 @@ pub fn teapot_pool(renderer: &mut Renderer, effort: Effort) -> Result<TeapotPool
 }
 
 /// A scene file with some whole numbers replaced.
-pub fn scene(path: &str, changes: &[(&str, usize)]) -> Result<ResolvedScene, Box<dyn Error>> {
+pub(crate) fn scene(
+    path: &str,
+    changes: &[(&str, usize)],
+) -> Result<ResolvedScene, Box<dyn Error>> {
     let changes = changes
         .iter()
         .map(|(pointer, value)| ((*pointer).to_owned(), value.to_string()));

@@ -7,7 +7,7 @@ use crate::report::{Cell, Table};
 
 /// Memory of one stage of the run.
 #[derive(Clone, Debug)]
-pub struct Stage {
+pub(crate) struct Stage {
     /// What was rendered.
     pub what: String,
     /// By the program's own account, of one frame.
@@ -17,13 +17,13 @@ pub struct Stage {
 }
 
 /// Forgets the largest resident set so far, where the system can.
-pub fn begin_stage() {
+pub(crate) fn begin_stage() {
     // Without it the peaks are those since the start: still true, and never too small.
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
 /// Largest resident set since [`begin_stage`], bytes.
-pub fn resident_peak() -> Option<u64> {
+pub(crate) fn resident_peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status
         .lines()
@@ -33,7 +33,7 @@ pub fn resident_peak() -> Option<u64> {
 }
 
 /// The table of memory.
-pub fn table(stages: &[Stage]) -> Table {
+pub(crate) fn table(stages: &[Stage]) -> Table {
     let mut table = Table::new(
         "Memory at the peak",
         "Planned before anything is allocated; accounted while it runs; resident is the whole process with drivers and \

@@ -10,7 +10,7 @@ use crate::spread::Spread;
 
 /// All that was measured.
 #[derive(Clone, Debug, Default)]
-pub struct Report {
+pub(crate) struct Report {
     /// Where and what, by name.
     facts: Vec<(String, String)>,
     /// One per topic.
@@ -19,7 +19,7 @@ pub struct Report {
 
 /// One topic.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub(crate) struct Table {
     title: String,
     note: String,
     columns: Vec<String>,
@@ -29,7 +29,7 @@ pub struct Table {
 
 /// One place in a table.
 #[derive(Clone, Debug)]
-pub enum Cell {
+pub(crate) enum Cell {
     /// Words.
     Text(String),
     /// One figure, and how it is written.
@@ -49,12 +49,12 @@ pub enum Cell {
 
 impl Cell {
     /// Words.
-    pub fn text(text: &str) -> Self {
+    pub(crate) fn text(text: &str) -> Self {
         Self::Text(text.to_owned())
     }
 
     /// A whole number.
-    pub fn count(value: usize) -> Self {
+    pub(crate) fn count(value: usize) -> Self {
         Self::Figure {
             value: value as f64,
             text: value.to_string(),
@@ -62,7 +62,7 @@ impl Cell {
     }
 
     /// A figure with three digits that count.
-    pub fn figure(value: f64) -> Self {
+    pub(crate) fn figure(value: f64) -> Self {
         Self::Figure {
             value,
             text: digits(value),
@@ -70,7 +70,7 @@ impl Cell {
     }
 
     /// A part of the whole, shown in percent.
-    pub fn percent(value: f64) -> Self {
+    pub(crate) fn percent(value: f64) -> Self {
         Self::Figure {
             value,
             text: format!("{} %", digits(value * 100.0)),
@@ -108,7 +108,7 @@ impl Cell {
 
 impl Table {
     /// A table without rows.
-    pub fn new(title: &str, note: &str, columns: &[&str]) -> Self {
+    pub(crate) fn new(title: &str, note: &str, columns: &[&str]) -> Self {
         Self {
             title: title.to_owned(),
             note: note.to_owned(),
@@ -176,12 +176,12 @@ impl Table {
 
 impl Report {
     /// Says something about the machine or the run.
-    pub fn fact(&mut self, name: &str, value: &str) {
+    pub(crate) fn fact(&mut self, name: &str, value: &str) {
         self.facts.push((name.to_owned(), value.to_owned()));
     }
 
     /// The whole report as text.
-    pub fn markdown(&self) -> String {
+    pub(crate) fn markdown(&self) -> String {
         let mut text = "# Caustica, measured\n\n".to_owned();
         for (name, value) in &self.facts {
             // Writing to a string cannot fail.
@@ -198,7 +198,7 @@ impl Report {
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn write(&self, folder: &str) -> io::Result<[PathBuf; 2]> {
+    pub(crate) fn write(&self, folder: &str) -> io::Result<[PathBuf; 2]> {
         let folder = Path::new(folder);
         std::fs::create_dir_all(folder)?;
         let facts: Map<String, Value> = self

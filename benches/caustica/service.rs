@@ -26,13 +26,13 @@ const WARM_UP: usize = 3;
 
 /// What the service gave.
 #[derive(Debug)]
-pub struct Service {
+pub(crate) struct Service {
     pub table: Table,
     pub memory: Stage,
 }
 
 /// Requests per second from one connection and from eight.
-pub fn requests(effort: Effort) -> Result<Service, Box<dyn Error>> {
+pub(crate) fn requests(effort: Effort) -> Result<Service, Box<dyn Error>> {
     let mut table = Table::new(
         "Service",
         "`POST /v1/render` of the sine pool with 32 water cells on 32 × 32 texels, EXR; kept-alive connections, no scene \

@@ -9,40 +9,40 @@ const MOST_RUNS: usize = 200;
 
 /// What several runs gave.
 #[derive(Clone, Debug, Default)]
-pub struct Spread {
+pub(crate) struct Spread {
     /// In order of size.
     sorted: Vec<f64>,
 }
 
 impl Spread {
     /// Sums up runs; without any, every figure is NaN.
-    pub fn of(mut values: Vec<f64>) -> Self {
+    pub(crate) fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
         Self { sorted: values }
     }
 
     /// How many runs.
-    pub fn runs(&self) -> usize {
+    pub(crate) fn runs(&self) -> usize {
         self.sorted.len()
     }
 
     /// The middle run.
-    pub fn median(&self) -> f64 {
+    pub(crate) fn median(&self) -> f64 {
         self.percentile(50.0)
     }
 
     /// The smallest run.
-    pub fn min(&self) -> f64 {
+    pub(crate) fn min(&self) -> f64 {
         self.sorted.first().copied().unwrap_or(f64::NAN)
     }
 
     /// The largest run.
-    pub fn max(&self) -> f64 {
+    pub(crate) fn max(&self) -> f64 {
         self.sorted.last().copied().unwrap_or(f64::NAN)
     }
 
     /// By nearest rank, 0 … 100.
-    pub fn percentile(&self, percentile: f64) -> f64 {
+    pub(crate) fn percentile(&self, percentile: f64) -> f64 {
         let rank = (percentile / 100.0 * self.sorted.len() as f64).ceil() as usize;
         let index = rank.clamp(1, self.sorted.len().max(1)) - 1;
         self.sorted.get(index).copied().unwrap_or(f64::NAN)
@@ -53,7 +53,7 @@ impl Spread {
 ///
 /// # Errors
 /// The first of `measure`.
-pub fn repeat<T, E>(
+pub(crate) fn repeat<T, E>(
     effort: Effort,
     mut measure: impl FnMut() -> Result<T, E>,
 ) -> Result<(Vec<T>, Spread), E> {
@@ -70,6 +70,6 @@ pub fn repeat<T, E>(
 }
 
 /// A duration in milliseconds.
-pub fn ms(duration: Duration) -> f64 {
+pub(crate) fn ms(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
 }

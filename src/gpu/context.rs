@@ -123,7 +123,8 @@ fn listen(device: &wgpu::Device, errors: &Arc<Mutex<ErrorLog>>) {
     device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
         let found = match &error {
             wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory(error.to_string()),
-            wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
+            wgpu::Error::Validation { description, .. }
+            | wgpu::Error::Internal { description, .. } => {
                 GpuError::Validation(description.clone())
             }
         };

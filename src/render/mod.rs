@@ -1,6 +1,8 @@
 //! Scene + Plan → Frame: owns the GPU context and the caches, and runs what the planner lists.
 
+mod buffers;
 mod collect;
+mod commands;
 mod executor;
 mod geometry;
 mod self_check;

@@ -203,6 +203,8 @@ fn dispatches_cover_their_work() {
     let band = Run::Band {
         first_row: 0,
         rows: 67,
+        offset: [0.0; 2],
+        sample_index: 0,
     };
     for pass in passes::ALL.iter().filter(|p| p.repeat == Repeat::Band) {
         check_cover(pass, &facts, band, [8, 8], [101, 67]);
@@ -251,6 +253,8 @@ fn every_entry_point_is_run_by_a_step() {
             Repeat::Band => Run::Band {
                 first_row: 0,
                 rows: 67,
+                offset: [0.0; 2],
+                sample_index: 0,
             },
         };
         let module = module(&format!("passes/{}.wgsl", pass.name));

@@ -228,6 +228,7 @@ async fn answered(error: RenderError, kind: ProblemKind) -> caustica::http::Prob
 #[tokio::test]
 async fn over_budget_names_both_figures() {
     let error = RenderError::OverBudget {
+        what: "the frame at its peak".to_owned(),
         needed_bytes: 5000,
         budget_bytes: 4000,
     };

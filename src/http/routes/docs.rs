@@ -9,7 +9,7 @@ use super::super::openapi::yaml;
 use super::super::problem::CommonProblems;
 use super::super::state::AppState;
 
-/// The page; its script gets the example scene from the contract's own source.
+/// The page; its example scene is the contract's.
 const PAGE: &str = include_str!("try_it.html");
 
 /// Where [`PAGE`] wants the example scene.
@@ -25,9 +25,8 @@ const PAGE_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script
     responses((status = OK, description = "HTML.", body = String, content_type = "text/html"), CommonProblems)
 )]
 pub async fn page() -> impl IntoResponse {
-    let example = format!("{:#}", super::render::example_scene());
-    // The scene holds no `<`, `&` or quotes that would end the text area.
-    let html = PAGE.replace(EXAMPLE_MARK, &example);
+    // The scene holds no `<` and no `&` that would mean something in a text area.
+    let html = PAGE.replace(EXAMPLE_MARK, super::render::EXAMPLE_SCENE);
     ([(header::CONTENT_SECURITY_POLICY, PAGE_POLICY)], Html(html))
 }
 

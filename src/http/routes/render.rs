@@ -10,7 +10,6 @@ use axum::{Extension, Json};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 use utoipa::ToSchema;
 
 use super::super::accept::{Representation, choose};
@@ -207,25 +206,10 @@ fn server_timing(stats: &Stats) -> String {
     text
 }
 
-/// A scene to start from: three waves over a sandy floor.
+/// A scene to start from, as its author wrote it.
+pub const EXAMPLE_SCENE: &str = include_str!("../../../scenes/pool.json");
+
+/// [`EXAMPLE_SCENE`] for the contract.
 pub fn example_scene() -> serde_json::Value {
-    json!({
-        "water": {
-            "waves": [
-                { "kind": "sine", "amplitude_m": 0.03, "wavelength_m": 0.9, "direction_deg": 20 },
-                { "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 0.6, "direction_deg": 75, "phase_deg": 40 },
-                { "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 0.35, "direction_deg": -30 }
-            ],
-            "ior": 1.333,
-            "absorption_per_m": [0.35, 0.07, 0.03]
-        },
-        "floor": { "depth_m": 2.0, "size_m": [4, 4], "albedo": [0.7, 0.65, 0.5] },
-        "lights": [
-            { "kind": "sun", "elevation_deg": 60, "azimuth_deg": 30, "irradiance_w_m2": [1000, 1000, 1000] },
-            { "kind": "sky", "radiance_w_m2_sr": [20, 30, 45] }
-        ],
-        "camera": { "position_m": [0, 2.5, 4], "target_m": [0, -1.5, 0], "vertical_fov_deg": 45 },
-        "output": { "kind": "view", "width": 640, "height": 360, "format": "png" },
-        "time_s": 0.0
-    })
+    serde_json::from_str(EXAMPLE_SCENE).expect("a scene of the repository is JSON")
 }

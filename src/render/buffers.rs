@@ -1,0 +1,235 @@
+//! What a frame holds on the GPU: its slots' buffers, and what the host puts into them.
+
+use std::collections::BTreeMap;
+
+use super::{RenderError, Renderer, geometry, slot_name};
+use crate::passes::desc::Step;
+use crate::passes::gpu_data::{Receiver, Wave};
+use crate::passes::light;
+use crate::passes::slot::{Lifetime, Slot, WIDE_GROUPS};
+use crate::plan::Plan;
+use crate::scene::ResolvedScene;
+use crate::scene::facts::SceneFacts;
+
+/// The buffers of one frame, by slot name.
+pub(super) struct FrameBuffers {
+    pub(super) by_name: BTreeMap<&'static str, wgpu::Buffer>,
+    pub(super) empty: wgpu::Buffer,
+    pub(super) queue_heads: wgpu::Buffer,
+    pub(super) indirect: wgpu::Buffer,
+}
+
+impl FrameBuffers {
+    /// The buffer of a slot; lists that hold nothing in this scene are one zero element.
+    pub(super) fn get(&self, name: &str) -> &wgpu::Buffer {
+        self.by_name.get(name).unwrap_or(&self.empty)
+    }
+}
+
+/// Textures a level map is drawn into before it goes to the arena.
+pub(super) struct DrawTargets {
+    pub(super) front: wgpu::TextureView,
+    pub(super) back: wgpu::TextureView,
+    pub(super) normal: wgpu::TextureView,
+    pub(super) scratch_normal: wgpu::TextureView,
+    pub(super) depth: wgpu::TextureView,
+}
+
+impl Renderer {
+    /// Lends the plan's buffers and uploads what the host provides.
+    pub(super) fn prepare(
+        &mut self,
+        resolved: &ResolvedScene,
+        facts: &SceneFacts,
+        plan: &Plan,
+    ) -> Result<FrameBuffers, RenderError> {
+        use wgpu::BufferUsages as U;
+        let device = self.gpu.device.clone();
+        let mut by_name = BTreeMap::new();
+        for planned in &plan.slots {
+            let Some(slot) = Slot::by_name(&planned.name) else {
+                continue;
+            };
+            match slot {
+                Slot::Geometry => {
+                    if let Some(buffer) = self.geometry_buffer(resolved) {
+                        by_name.insert(slot_name(slot), buffer);
+                    }
+                }
+                Slot::LevelMaps => {
+                    if facts.wet_objects().next().is_some() {
+                        by_name.insert(slot_name(slot), self.arena_buffer());
+                    }
+                }
+                _ => {
+                    let usage = U::STORAGE | U::COPY_DST | U::COPY_SRC;
+                    let buffer = self
+                        .pool
+                        .lend(&device, slot_name(slot), planned.bytes, usage);
+                    by_name.insert(slot_name(slot), buffer);
+                }
+            }
+        }
+        let queue_heads = self
+            .pool
+            .lend(&device, "queue heads", 32, U::COPY_SRC | U::COPY_DST);
+        let heads: [[u32; 4]; 2] = [[0, 1, 1, 0], [0, WIDE_GROUPS, 1, 0]];
+        self.gpu
+            .queue
+            .write_buffer(&queue_heads, 0, bytemuck::cast_slice(&heads));
+        let empty = self
+            .pool
+            .lend(&device, "empty list", 256, U::STORAGE | U::COPY_DST);
+        self.gpu.queue.write_buffer(&empty, 0, &[0; 256]);
+        let buffers = FrameBuffers {
+            by_name,
+            empty,
+            queue_heads,
+            indirect: self
+                .pool
+                .lend(&device, "indirect", 12, U::INDIRECT | U::COPY_DST),
+        };
+        self.upload(facts, &buffers);
+        self.gpu.check()?;
+        Ok(buffers)
+    }
+
+    pub(super) fn upload(&self, facts: &SceneFacts, buffers: &FrameBuffers) {
+        let write = |slot: Slot, bytes: &[u8]| {
+            if let Some(buffer) = buffers.by_name.get(slot_name(slot))
+                && !bytes.is_empty()
+            {
+                self.gpu.queue.write_buffer(buffer, 0, bytes);
+            }
+        };
+        let waves: Vec<Wave> = facts
+            .surface
+            .components
+            .iter()
+            .map(|c| Wave {
+                amplitude_m: c.amplitude_m as f32,
+                frequency_x_per_m: c.frequency_per_m.x as f32,
+                frequency_z_per_m: c.frequency_per_m.y as f32,
+                phase_turns: c.phase_turns as f32,
+            })
+            .collect();
+        write(Slot::Waves, bytemuck::cast_slice(&waves));
+        if let Some(geometry) = &self.geometry
+            && buffers.by_name.contains_key(slot_name(Slot::Instances))
+        {
+            write(
+                Slot::Instances,
+                bytemuck::cast_slice(&geometry.instances(facts)),
+            );
+        }
+        let all: Vec<Receiver> = (0..facts.suns.len())
+            .flat_map(|sun| self.receivers(facts, sun))
+            .collect();
+        write(Slot::AllReceivers, bytemuck::cast_slice(&all));
+    }
+
+    pub(super) fn receivers(&self, facts: &SceneFacts, sun: usize) -> Vec<Receiver> {
+        light::receivers(facts, sun, |object| {
+            let key = facts.suns[sun].boxes[object].as_ref().map(|b| &b.key);
+            let offset = key
+                .and_then(|key| self.level_maps.offset(key))
+                .unwrap_or_default();
+            u32::try_from(offset / 4).unwrap_or(u32::MAX)
+        })
+    }
+
+    pub(super) fn geometry_buffer(&mut self, resolved: &ResolvedScene) -> Option<wgpu::Buffer> {
+        if resolved.meshes.is_empty() {
+            return None;
+        }
+        if !self
+            .geometry
+            .as_ref()
+            .is_some_and(|g| g.holds(&resolved.meshes))
+        {
+            self.geometry = Some(geometry::Geometry::upload(&self.gpu, &resolved.meshes));
+        }
+        self.geometry.as_ref().map(|g| g.buffer.clone())
+    }
+
+    pub(super) fn arena_buffer(&mut self) -> wgpu::Buffer {
+        let size = self.level_maps.stats().budget_bytes;
+        self.arena
+            .get_or_insert_with(|| {
+                self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("level maps"),
+                    size,
+                    usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                    mapped_at_creation: false,
+                })
+            })
+            .clone()
+    }
+
+    pub(super) fn draw_targets(&self, texels: u32) -> DrawTargets {
+        let texture = |label, format| {
+            self.gpu
+                .device
+                .create_texture(&wgpu::TextureDescriptor {
+                    label: Some(label),
+                    size: wgpu::Extent3d {
+                        width: texels,
+                        height: texels,
+                        depth_or_array_layers: 1,
+                    },
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format,
+                    usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                        | wgpu::TextureUsages::TEXTURE_BINDING,
+                    view_formats: &[],
+                })
+                .create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        DrawTargets {
+            front: texture("front depth", wgpu::TextureFormat::R32Float),
+            back: texture("back depth", wgpu::TextureFormat::R32Float),
+            normal: texture("front normal", wgpu::TextureFormat::R32Uint),
+            scratch_normal: texture("back normal", wgpu::TextureFormat::R32Uint),
+            depth: texture("depth", wgpu::TextureFormat::Depth32Float),
+        }
+    }
+
+    pub(super) fn uniform_buffers(&self, step: &Step) -> BTreeMap<&'static str, wgpu::Buffer> {
+        step.uniforms
+            .iter()
+            .map(|(name, bytes)| {
+                let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(name),
+                    size: bytes.len() as u64,
+                    usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                });
+                self.gpu.queue.write_buffer(&buffer, 0, bytes);
+                (*name, buffer)
+            })
+            .collect()
+    }
+}
+
+/// Empties sums and queues before a sun's turn.
+pub(super) fn clear_for_sun(encoder: &mut wgpu::CommandEncoder, buffers: &FrameBuffers) {
+    for (name, buffer) in &buffers.by_name {
+        let Some(info) = Slot::by_name(name).map(Slot::info) else {
+            continue;
+        };
+        if info.is_queue {
+            let head = if *name == slot_name(Slot::WideQueue) {
+                16
+            } else {
+                0
+            };
+            encoder.copy_buffer_to_buffer(&buffers.queue_heads, head, buffer, 0, 16);
+        } else if info.lifetime == Lifetime::Sun
+            && (*name == slot_name(Slot::Flux) || *name == slot_name(Slot::Energy))
+        {
+            encoder.clear_buffer(buffer, 0, None);
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! Dispatches, draws and submissions.
+
+use std::time::Instant;
+
+use super::buffers::{DrawTargets, FrameBuffers};
+use super::{Renderer, ms_since, slot_name};
+use crate::gpu::kernel::RasterTargets;
+use crate::gpu::{Binding, GpuError, Kernel, RasterKernel};
+use crate::passes::desc::{Groups, PassDesc, Run, Step, Work};
+use crate::passes::level_map::EMPTY_DEPTH;
+use crate::scene::facts::SceneFacts;
+use crate::stats::TimeStats;
+
+/// When the recording of a submission began.
+#[derive(Clone, Copy)]
+pub(super) struct Recording {
+    pub(super) at: Instant,
+    pub(super) gpu_ms: f64,
+}
+
+impl Recording {
+    pub(super) fn start(time_ms: &TimeStats) -> Self {
+        Self {
+            at: Instant::now(),
+            gpu_ms: time_ms.gpu,
+        }
+    }
+}
+
+impl Renderer {
+    pub(super) fn encoder(&self, label: &str) -> wgpu::CommandEncoder {
+        self.gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
+    }
+
+    pub(super) fn submit(
+        &self,
+        encoder: wgpu::CommandEncoder,
+        started: Recording,
+        time_ms: &mut TimeStats,
+    ) -> Result<(), GpuError> {
+        let commands = encoder.finish();
+        // Passes that the host timed on the way are GPU time, not recording.
+        time_ms.upload += ms_since(started.at) - (time_ms.gpu - started.gpu_ms);
+        let submitted = Instant::now();
+        self.gpu.queue.submit([commands]);
+        self.gpu.wait()?;
+        time_ms.gpu += ms_since(submitted);
+        Ok(())
+    }
+
+    /// Where the host times passes: submits what is recorded, waits, and starts over with an empty encoder.
+    pub(super) fn submit_if_timed(
+        &mut self,
+        pass: &'static PassDesc,
+        encoder: &mut wgpu::CommandEncoder,
+        time_ms: &mut TimeStats,
+    ) -> Result<(), GpuError> {
+        if !self.timing.by_host() {
+            return Ok(());
+        }
+        let recorded = std::mem::replace(encoder, self.encoder("timed pass"));
+        let submitted = Instant::now();
+        self.gpu.queue.submit([recorded.finish()]);
+        self.gpu.wait()?;
+        let ms = ms_since(submitted);
+        time_ms.gpu += ms;
+        self.timing.note(pass.name, ms);
+        Ok(())
+    }
+
+    pub(super) fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        pass: &'static PassDesc,
+        facts: &SceneFacts,
+        run: Run<'_>,
+        buffers: &FrameBuffers,
+        targets: Option<&DrawTargets>,
+    ) -> Result<(), GpuError> {
+        let wide_sums = matches!(
+            run,
+            Run::Sun {
+                wide_sums: true,
+                ..
+            }
+        );
+        for step in (pass.steps)(facts, run) {
+            match step.work {
+                Work::Compute(groups) => self.dispatch(
+                    encoder,
+                    pass,
+                    facts,
+                    &step,
+                    (groups, wide_sums),
+                    buffers,
+                    targets,
+                )?,
+                Work::DrawLevelMap { back, vertices } => {
+                    if let Some(targets) = targets {
+                        self.draw(encoder, pass, &step, (back, vertices), buffers, targets)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one call site; a struct would only rename them"
+    )]
+    pub(super) fn dispatch(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        pass: &'static PassDesc,
+        facts: &SceneFacts,
+        step: &Step,
+        (groups, wide_sums): (Groups, bool),
+        buffers: &FrameBuffers,
+        targets: Option<&DrawTargets>,
+    ) -> Result<(), GpuError> {
+        let key = (pass.name, step.entry, facts.attenuates(), wide_sums);
+        if !self.kernels.contains_key(&key) {
+            let path = format!("passes/{}.wgsl", pass.name);
+            let switch = |on: bool| f64::from(u8::from(on));
+            let constants = [
+                ("ATTENUATES", switch(facts.attenuates())),
+                ("WIDE_SUMS", switch(wide_sums)),
+            ];
+            let kernel = Kernel::new(&self.gpu, &self.sources, &path, step.entry, &constants)?;
+            self.kernels.insert(key, kernel);
+        }
+        let kernel = &self.kernels[&key];
+        let uniforms = self.uniform_buffers(step);
+        let group = kernel.bind(&self.gpu, |name| match name {
+            "front_depth" => targets.map(|t| Binding::Texture(&t.front)),
+            "back_depth" => targets.map(|t| Binding::Texture(&t.back)),
+            "front_normal" => targets.map(|t| Binding::Texture(&t.normal)),
+            _ => Some(Binding::Buffer(
+                uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
+            )),
+        })?;
+        if let Groups::Queue(slot) = groups {
+            encoder.copy_buffer_to_buffer(
+                buffers.get(slot_name(slot)),
+                0,
+                &buffers.indirect,
+                0,
+                12,
+            );
+        }
+        let timestamp_writes = self.timing.span(pass.name).map(|(query_set, begin, end)| {
+            wgpu::ComputePassTimestampWrites {
+                query_set,
+                beginning_of_pass_write_index: Some(begin),
+                end_of_pass_write_index: Some(end),
+            }
+        });
+        let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(step.entry),
+            timestamp_writes,
+        });
+        compute.set_pipeline(kernel.pipeline());
+        compute.set_bind_group(0, &group, &[]);
+        match groups {
+            Groups::Direct([x, y, z]) => compute.dispatch_workgroups(x, y, z),
+            Groups::Queue(_) => compute.dispatch_workgroups_indirect(&buffers.indirect, 0),
+        }
+        Ok(())
+    }
+
+    pub(super) fn draw(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        pass: &'static PassDesc,
+        step: &Step,
+        (back, vertices): (bool, u32),
+        buffers: &FrameBuffers,
+        targets: &DrawTargets,
+    ) -> Result<(), GpuError> {
+        if !self.raster_kernels.contains_key(&back) {
+            let kernel = RasterKernel::new(
+                &self.gpu,
+                &self.sources,
+                &format!("passes/{}.wgsl", pass.name),
+                (step.entry, "level_map_fragment"),
+                &RasterTargets {
+                    colors: &[wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint],
+                    depth: wgpu::TextureFormat::Depth32Float,
+                    depth_compare: if back {
+                        wgpu::CompareFunction::Greater
+                    } else {
+                        wgpu::CompareFunction::Less
+                    },
+                },
+            )?;
+            self.raster_kernels.insert(back, kernel);
+        }
+        let kernel = &self.raster_kernels[&back];
+        let uniforms = self.uniform_buffers(step);
+        let group = kernel.bind(&self.gpu, |name| {
+            Some(Binding::Buffer(
+                uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
+            ))
+        })?;
+        let (color, normal) = if back {
+            (&targets.back, &targets.scratch_normal)
+        } else {
+            (&targets.front, &targets.normal)
+        };
+        let clear = |value: f64| wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color {
+                r: value,
+                ..wgpu::Color::default()
+            }),
+            store: wgpu::StoreOp::Store,
+        };
+        let attachment = |view, value| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: clear(value),
+            })
+        };
+        let timestamp_writes = self.timing.span(pass.name).map(|(query_set, begin, end)| {
+            wgpu::RenderPassTimestampWrites {
+                query_set,
+                beginning_of_pass_write_index: Some(begin),
+                end_of_pass_write_index: Some(end),
+            }
+        });
+        let mut draw = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(step.entry),
+            color_attachments: &[
+                attachment(color, if back { -EMPTY_DEPTH } else { EMPTY_DEPTH }),
+                attachment(normal, 0.0),
+            ],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &targets.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(if back { 0.0 } else { 1.0 }),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes,
+            ..Default::default()
+        });
+        draw.set_pipeline(kernel.pipeline());
+        draw.set_bind_group(0, &group, &[]);
+        draw.draw(0..vertices, 0..1);
+        Ok(())
+    }
+}
