@@ -14,7 +14,10 @@ mod formulas;
 mod harness;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
+mod service;
 mod shadows;
 mod sine_pool;
 mod symmetry;
+mod tiles;
+mod view;
 mod wide_sums;
