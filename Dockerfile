@@ -24,7 +24,9 @@ USER caustica
 WORKDIR /home/caustica
 
 # Vulkan needs `graphics`; setting the variable replaces NVIDIA's default, so all three are named.
+# Mesa's device selection looks for a display and prints errors where there is none.
 ENV NVIDIA_DRIVER_CAPABILITIES=compute,utility,graphics \
+    NODEVICE_SELECT=1 \
     CAUSTICA_LISTEN=0.0.0.0:8080
 EXPOSE 8080
 HEALTHCHECK --interval=10s --timeout=5s --start-period=30s --retries=3 CMD ["caustica", "health"]

@@ -5,6 +5,11 @@ CARGO_TARGET_DIR ?= target
 PROGRAM := $(CARGO_TARGET_DIR)/release/caustica
 PICTURE := out/teapot_pool.png
 
+# Without a session to look for a display in, Mesa's device selection prints errors at every start; it has nothing to select.
+ifndef XDG_RUNTIME_DIR
+export NODEVICE_SELECT ?= 1
+endif
+
 .DEFAULT_GOAL := build
 .PHONY: demo build test lint bench clean deps
 

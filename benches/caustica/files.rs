@@ -36,8 +36,10 @@ pub(crate) fn encoding(frame: &Frame, effort: Effort) -> Result<Table, EncodeErr
             tone_curve: ToneCurve::default(),
             exr_pixel: ExrPixel::Half,
         };
-        let (files, times) = repeat(effort, || encode(frame, &encoding, &metadata))?;
-        let size = files.last().map_or(0, |file| file.bytes.len());
+        let (sizes, times) = repeat(effort, || {
+            encode(frame, &encoding, &metadata).map(|file| file.bytes.len())
+        })?;
+        let size = sizes.last().copied().unwrap_or_default();
         table.rows.push(vec![
             Cell::text(name),
             Cell::Runs(times),

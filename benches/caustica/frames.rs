@@ -103,8 +103,12 @@ pub(crate) fn teapot_pool(
     let mut last = None;
     for (width, height) in [(512, 512), (1920, 1080)] {
         eprintln!("teapot pool, {width} × {height} …");
-        let size = [("/output/width", width), ("/output/height", height)];
-        let scene = scene(TEAPOT_POOL, &size)?;
+        let changes = [
+            ("/output/width", width),
+            ("/output/height", height),
+            ("/quality/pixel_samples", 1),
+        ];
+        let scene = scene(TEAPOT_POOL, &changes)?;
         let name = |state: &str| {
             vec![
                 Cell::text(&format!("{width} × {height}")),
@@ -137,7 +141,7 @@ pub(crate) fn teapot_pool(
     let mut table = pass_table(
         "Teapot pool: time",
         &format!(
-            "`{TEAPOT_POOL}`; ms, median (smallest..largest). The first frame after the start pays for the \
+            "`{TEAPOT_POOL}` with one ray per pixel; ms, median (smallest..largest). The first frame after the start pays for the \
              pipelines; a new mesh for its upload and its level map; a warm frame finds them."
         ),
         &["pixels", "state"],

@@ -25,7 +25,7 @@ use report::Report;
 
 /// How long to measure.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub(crate) struct Effort {
     /// Time for one row of a table, beyond the least number of runs.
     pub row: Duration,
     /// Least runs behind a figure.
@@ -38,7 +38,7 @@ pub struct Effort {
 
 const FULL: Effort = Effort {
     row: Duration::from_secs(4),
-    least_runs: 5,
+    least_runs: 3,
     service_row: Duration::from_secs(8),
     truth_error: 1e-3,
 };

@@ -116,6 +116,7 @@ fn log_error(error: &ApiError, status: u16, took: Duration) {
     }
 }
 
+/// To the microsecond.
 fn milliseconds(duration: Duration) -> f64 {
-    duration.as_secs_f64() * 1e3
+    (duration.as_secs_f64() * 1e6).round() / 1e3
 }
