@@ -33,11 +33,16 @@ fn add_flux(texel: u32, channel: u32, channels: u32, counts: f32) {
     if high + carry > 0u { atomicAdd(&flux[2u * place + 1u], high + carry); }
 }
 
-// The sum of a texel and channel, in counts.
-fn flux_counts(texel: u32, channel: u32, channels: u32) -> f32 {
+// The sum of a texel and channel, in counts: low and high word.
+fn flux_words(texel: u32, channel: u32, channels: u32) -> vec2u {
     let place = texel * channels + channel;
-    if !WIDE_SUMS { return f32(atomicLoad(&flux[place])); }
-    return f32(atomicLoad(&flux[2u * place + 1u])) * 4294967296.0 + f32(atomicLoad(&flux[2u * place]));
+    if !WIDE_SUMS { return vec2u(atomicLoad(&flux[place]), 0u); }
+    return vec2u(atomicLoad(&flux[2u * place]), atomicLoad(&flux[2u * place + 1u]));
+}
+
+fn flux_counts(texel: u32, channel: u32, channels: u32) -> f32 {
+    let words = flux_words(texel, channel, channels);
+    return f32(words.y) * 4294967296.0 + f32(words.x);
 }
 
 // Adds `counts` (0 … 2⁶²) to a term.
