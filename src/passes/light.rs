@@ -13,10 +13,12 @@ const WIDE_TEXELS: u32 = 1024;
 const BEAM_COUNTS: f64 = 1_073_741_824.0;
 /// The same in wide sums: 2⁴⁰, so that all beams of the finest grid (2 · 2048²) fit 63 bits together.
 const WIDE_BEAM_COUNTS: f64 = 1_099_511_627_776.0;
-/// Fewest counts of the largest beam in narrow sums: beams that are all alike all round the same way, by up to half a count.
-const FINE_BEAM_COUNTS: f64 = 65_536.0;
-/// Fewest counts of an evenly lit texel in narrow sums: few beams reach it, each rounded by up to half a count.
-const FINE_TEXEL_COUNTS: f64 = 4096.0;
+/// Fewest counts in narrow sums of the largest beam, and of an evenly lit texel of the coarsest map: what is all alike all
+/// rounds the same way, by up to half a count.
+const FINE_COUNTS: f64 = 65_536.0;
+/// Fewest counts of an evenly lit texel of the finest map; less, because a small object in a wide pool is common and must not
+/// make everything dear.
+const FINEST_MAP_COUNTS: f64 = 4096.0;
 /// Where a narrow sum wraps.
 const WRAP_COUNTS: f64 = 4_294_967_296.0;
 /// Times an evenly lit texel's flux that a narrow sum holds.
@@ -95,9 +97,11 @@ fn texel_fluxes_m2(facts: &SceneFacts, index: usize) -> impl Iterator<Item = f64
 /// Whether narrow sums would be too coarse for a sun from the start: very many beams on a texel, or texels under a beam.
 pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     let scale = flux_scale(facts, index, false);
-    let texel_m2 = texel_fluxes_m2(facts, index).fold(f64::INFINITY, f64::min);
-    scale * largest_beam_m2(facts, &facts.suns[index]) < FINE_BEAM_COUNTS
-        || scale * texel_m2 < FINE_TEXEL_COUNTS
+    let coarsest_m2 = texel_fluxes_m2(facts, index).fold(0.0, f64::max);
+    let finest_m2 = texel_fluxes_m2(facts, index).fold(f64::INFINITY, f64::min);
+    scale * largest_beam_m2(facts, &facts.suns[index]) < FINE_COUNTS
+        || scale * coarsest_m2 < FINE_COUNTS
+        || scale * finest_m2 < FINEST_MAP_COUNTS
 }
 
 /// Whether narrow sums of a sun have wrapped: what landed is then short by at least one whole 2³² counts.

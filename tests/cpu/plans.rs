@@ -310,3 +310,31 @@ fn a_pass_before_its_source_is_an_error() {
     };
     assert_eq!(error, expected);
 }
+
+#[test]
+fn scenes_are_fast_with_narrow_sums_and_extremes_are_exact_with_wide_ones() {
+    for name in scene_files::names() {
+        for cells in ["64", "256", "512", "1024"] {
+            let scene = scene_files::load(&name, &[("/quality/water_cells", cells)]);
+            let facts = SceneFacts::of(&scene).unwrap();
+            for sun in 0..facts.suns.len() {
+                let wide = passes::light::needs_wide_sums(&facts, sun);
+                // 512² cells are 128 beams for each of the 64² texels of flat.json.
+                let crowded = name == "flat" && matches!(cells, "512" | "1024");
+                assert_eq!(wide, crowded, "{name}, {cells}");
+            }
+        }
+    }
+    for (cells, side) in [("1024", "4"), ("2", "2048")] {
+        let changes = [
+            ("/quality/water_cells", cells),
+            ("/output/width", side),
+            ("/output/height", side),
+        ];
+        let facts = SceneFacts::of(&scene_files::load("flat", &changes)).unwrap();
+        assert!(
+            passes::light::needs_wide_sums(&facts, 0),
+            "{cells} cells, {side}²"
+        );
+    }
+}

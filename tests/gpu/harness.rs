@@ -71,7 +71,12 @@ impl Map {
 
     /// The map of a scene.
     pub(crate) fn from(resolved: &ResolvedScene) -> Self {
-        let frame = render(resolved);
+        Self::with(&mut renderer(), resolved)
+    }
+
+    /// The map of a scene from a renderer that is held for longer.
+    pub(crate) fn with(renderer: &mut Renderer, resolved: &ResolvedScene) -> Self {
+        let frame = render_with(renderer, resolved);
         let texels = layer(&frame, LayerName::Irradiance);
         Self { frame, texels }
     }

@@ -194,17 +194,25 @@ fn errors(name: &str, scene: Value) -> ([f64; 4], f64) {
     (errors, on_object)
 }
 
+/// The floor's error must fall with each level, or stay within the noise of the truth (7·10⁻⁴), to less than `last`.
+fn assert_falls(errors: [f64; 4], last: f64) {
+    assert!(errors.windows(2).all(|w| w[1] <= w[0] + 1e-4), "{errors:?}");
+    assert!(errors[0] <= 3e-3 && errors[3] <= last, "{errors:?}");
+    assert!(errors[3] < 0.8 * errors[0], "{errors:?}");
+}
+
+// Bounds are about one and a half times what was measured: 1.8, 1.2, 1.0, 1.0 · 10⁻³ (box), 1.5, 1.1, 1.0, 1.0 · 10⁻³ (teapot).
+
 #[test]
 fn shadows_of_a_box_under_waves_are_those_of_the_reference() {
-    let (errors, _) = errors("box", wavy("box.obj", 0.4));
-    assert!(errors[3] <= 0.02, "{errors:?}");
-    assert!(errors.windows(2).all(|w| w[1] <= w[0] + 1e-3), "{errors:?}");
-    assert!(errors[0] > errors[3], "{errors:?}");
+    let (errors, on_object) = errors("box", wavy("box.obj", 0.4));
+    assert_falls(errors, 1.6e-3);
+    assert!(on_object.abs() <= 1e-3, "{on_object:e}");
 }
 
 #[test]
 fn shadows_of_the_teapot_under_waves_are_those_of_the_reference() {
-    let (errors, _) = errors("teapot", wavy("teapot.obj", 0.5));
-    assert!(errors[3] <= 0.02, "{errors:?}");
-    assert!(errors.windows(2).all(|w| w[1] <= w[0] + 1e-3), "{errors:?}");
+    let (errors, on_object) = errors("teapot", wavy("teapot.obj", 0.5));
+    assert_falls(errors, 1.6e-3);
+    assert!(on_object.abs() <= 6e-3, "{on_object:e}");
 }

@@ -250,9 +250,9 @@ fn snells_window_holds_the_whole_sky_and_nothing_is_seen_beside_it() {
             );
         }
         if sin * IOR < 1.0 {
-            inside += 1
+            inside += 1;
         } else {
-            outside += 1
+            outside += 1;
         }
     }
     assert!(inside > 500 && outside > 500, "{inside} {outside}");
