@@ -113,33 +113,29 @@ fn deposit_texels(target_map: Target, b: Beam, arriving: vec3f, first: u32, stri
     return beside;
 }
 
-// What the lanes of a workgroup brought beside the maps; summed before it is rounded, since each lane's part is tiny.
-var<workgroup> left_sums: array<vec3f, 64>;
-
-// Some workgroups (along y) per wide or flat footprint (along x).
+// Some workgroups (along y) per wide or flat footprint (along x). What lies beside the map goes straight to the global sums, lane
+// by lane and beam by beam: a sliver is far below the workgroup account's smallest count, and floats added up over several beams
+// would depend on the queue's order.
 @compute @workgroup_size(64)
 fn deposit_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let count = atomicLoad(&wide_queue[QUEUE_COUNT]);
-    var left = vec3f(0.0);
+    let lane = group.y * 64u + invocation;
     for (var item = group.x; item < count; item += groups.x) {
         let beam_index = atomicLoad(&wide_queue[QUEUE_HEAD + item]);
         let cell_index = beam_index >> 1u;
         let b = grid_beam(vec2u(cell_index % light.cells, cell_index / light.cells), beam_index & 1u);
         let arriving = b.transmitted_m2 * mean_transmission(b.t);
         let target_map = target_of(receivers[b.receiver.x]);
-        let lane = group.y * 64u + invocation;
+        var beside = 0.0;
         if is_segment(b.uv[0], b.uv[1], b.uv[2]) {
-            if lane == 0u { left += arriving * deposit_segment(target_map, b.uv[0], b.uv[1], b.uv[2], arriving); }
+            if lane == 0u { beside = deposit_segment(target_map, b.uv[0], b.uv[1], b.uv[2], arriving); }
         } else {
-            left += arriving * deposit_texels(target_map, b, arriving, lane, groups.y * 64u);
+            beside = deposit_texels(target_map, b, arriving, lane, groups.y * 64u);
+        }
+        if beside > 0.0 {
+            for (var channel = 0u; channel < light.channels; channel++) {
+                add_energy(TERM_LEFT + channel, arriving[channel] * beside * light.energy_scale);
+            }
         }
     }
-    left_sums[invocation] = left;
-    for (var stride = 32u; stride > 0u; stride = stride >> 1u) {
-        workgroupBarrier();
-        if invocation < stride { left_sums[invocation] += left_sums[invocation + stride]; }
-    }
-    workgroupBarrier();
-    // Straight to the global sums: a sliver beside the map is far below the workgroup account's smallest count.
-    if invocation < light.channels { add_energy(TERM_LEFT + invocation, left_sums[0][invocation] * light.energy_scale); }
 }

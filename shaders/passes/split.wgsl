@@ -67,19 +67,15 @@ fn split_part(cell: vec2u, half: u32, n: u32) -> Losses {
 @compute @workgroup_size(64)
 fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let count = split_queue[QUEUE_COUNT];
-    var sums = Losses(0.0, vec3f(0.0), vec3f(0.0));
     for (var item = group.x; item < count; item += groups.x) {
         let beam_index = split_queue[QUEUE_HEAD + item];
         let cell_index = beam_index >> 1u;
         let cell = vec2u(cell_index % light.cells, cell_index / light.cells);
         for (var n = invocation; n < (1u << (2u * light.split_levels)); n += 64u) {
-            let losses = split_part(cell, beam_index & 1u, n);
-            sums.missed += losses.missed;
-            sums.extinguished += losses.extinguished;
-            sums.left += losses.left;
+            // Noted one by one: floats added up over several beams would depend on the queue's order.
+            note_losses(split_part(cell, beam_index & 1u, n));
         }
     }
-    note_losses(sums);
     workgroupBarrier();
     flush_account(invocation);
 }
