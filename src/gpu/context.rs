@@ -1,5 +1,6 @@
 //! Opens an adapter by policy and keeps what goes wrong on its device.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -28,6 +29,8 @@ pub struct GpuContext {
     pub limits: wgpu::Limits,
     /// Whether pass timestamps can be taken.
     pub timestamps: bool,
+    /// Largest staging buffer since [`Self::take_readback_peak`], bytes.
+    pub(super) readback_peak: AtomicU64,
     adapter: AdapterStats,
     errors: Arc<Mutex<ErrorLog>>,
 }
@@ -71,9 +74,15 @@ impl GpuContext {
             queue,
             limits,
             timestamps,
+            readback_peak: AtomicU64::new(0),
             adapter,
             errors,
         })
+    }
+
+    /// Bytes of the largest readback since the last call.
+    pub fn take_readback_peak(&self) -> u64 {
+        self.readback_peak.swap(0, Ordering::Relaxed)
     }
 
     /// Where this runs.

@@ -10,6 +10,8 @@ pub fn read<T: Pod>(
     source: &wgpu::Buffer,
     bytes: u64,
 ) -> Result<Vec<T>, GpuError> {
+    gpu.readback_peak
+        .fetch_max(bytes, std::sync::atomic::Ordering::Relaxed);
     let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("readback"),
         size: bytes,

@@ -10,6 +10,10 @@ pub const MOST_GROUPS: u32 = 65_535;
 pub const WIDE_GROUPS: u32 = 16;
 /// (low, high) pairs of the energy account, see `shaders/shared/flux.wgsl`.
 pub const ENERGY_TERMS: u64 = 16;
+/// Bytes a frame holds besides its slots: the empty list, queue heads, arguments of indirect dispatches.
+pub const SUNDRY_BYTES: u64 = 256 + 32 + 12;
+/// Bytes per texel of the five textures that a level map is drawn into.
+pub const DRAW_TARGET_BYTES: u64 = 5 * 4;
 /// Most bytes of one layer of a band of the picture.
 pub const BAND_BYTES: u64 = 32 << 20;
 
@@ -252,6 +256,22 @@ impl Slot {
             Self::Geometry => facts.geometry_bytes,
             Self::LevelMaps => 0,
         }
+    }
+}
+
+/// Bytes of the textures that a level map is drawn into.
+pub fn draw_target_bytes(texels: u32) -> u64 {
+    DRAW_TARGET_BYTES * u64::from(texels) * u64::from(texels)
+}
+
+/// Bytes of the largest result that is copied to the host at once.
+pub fn readback_bytes(facts: &SceneFacts) -> u64 {
+    match facts.camera {
+        Some(camera) => {
+            16 * u64::from(camera.width) * u64::from(band_rows(camera.width, camera.height))
+        }
+        None if facts.suns.is_empty() => 0,
+        None => 12 * irradiance_texels(facts),
     }
 }
 

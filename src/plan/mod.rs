@@ -246,6 +246,32 @@ fn slots(
         .copied()
         .collect();
     let wanted: u64 = level_maps(facts).iter().map(|key| key.bytes()).sum();
+    let draws = kept.iter().any(|(pass, _)| pass.repeat == Repeat::LevelMap);
+    let mut besides = vec![
+        (
+            "readback",
+            slot::readback_bytes(facts),
+            "the largest result on its way to the host",
+        ),
+        (
+            "sundry",
+            slot::SUNDRY_BYTES,
+            "empty list, queue heads, dispatch arguments",
+        ),
+    ];
+    if draws {
+        let bytes = slot::draw_target_bytes(facts.quality.level_map_texels);
+        besides.push((
+            "level_map_targets",
+            bytes,
+            "textures that a level map is drawn into",
+        ));
+    }
+    let besides = besides.into_iter().map(|(name, bytes, holds)| PlannedSlot {
+        name: name.to_owned(),
+        bytes,
+        holds: holds.to_owned(),
+    });
     used.into_iter()
         .map(|slot| {
             let info = slot.info();
@@ -259,6 +285,7 @@ fn slots(
                 holds: info.holds.to_owned(),
             }
         })
+        .chain(besides)
         .collect()
 }
 

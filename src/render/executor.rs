@@ -10,7 +10,7 @@ use super::commands::Recording;
 use super::{RenderError, Renderer, RunResult, collect, geometry, ms_since, slot_name};
 use crate::gpu::{GpuError, readback};
 use crate::passes::desc::{PassDesc, Repeat, Run};
-use crate::passes::slot::{ENERGY_TERMS, Slot, band_rows};
+use crate::passes::slot::{self, ENERGY_TERMS, Slot, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
 use crate::scene::facts::SceneFacts;
@@ -32,7 +32,13 @@ impl Renderer {
     ) -> Result<RunResult, RenderError> {
         let buffers = self.prepare(resolved, facts, plan)?;
         let result = self.run_passes(facts, plan, missing, &buffers, cancel);
+        let targets = missing
+            .iter()
+            .map(|key| slot::draw_target_bytes(key.texels))
+            .max();
         let peak_bytes = self.pool.peak_bytes()
+            + targets.unwrap_or(0)
+            + self.gpu.take_readback_peak()
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
             + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes);
         let FrameBuffers {
