@@ -1,7 +1,21 @@
 // Diffuse light of a uniform sky. Twin of src/physics/sky.rs.
 
+// Irradiance from an evenly bright cone around the zenith on a plane whose normal has the upward component `normal_y`, as a share
+// of that on a horizontal one; `sin2_cone` is the square of the sine of the cone's half angle.
+fn cone_share(normal_y: f32, sin2_cone: f32) -> f32 {
+    let sin_cone = sqrt(sin2_cone);
+    if normal_y >= sin_cone { return normal_y; }
+    if normal_y <= -sin_cone { return 0.0; }
+    let x = sqrt(max(1.0 / sin2_cone - 1.0, 0.0));
+    let sin_tilt = sqrt(max(1.0 - normal_y * normal_y, 0.0));
+    let y = clamp(-x * normal_y / sin_tilt, -1.0, 1.0);
+    let reach = sin_tilt * sqrt(max(1.0 - y * y, 0.0));
+    return ((normal_y * acos(y) - x * reach) * sin2_cone + atan2(reach, x)) / (3.14159265 * sin2_cone);
+}
+
 // Irradiance from a uniform sky of `radiance` on a surface whose normal has the upward component `normal_y`, `depth_m` under flat
-// water that lets `transmittance` through and takes c (1/m) away along paths `path_factor` times the depth.
-fn sky_irradiance(radiance: f32, transmittance: f32, c_per_m: f32, depth_m: f32, path_factor: f32, normal_y: f32) -> f32 {
-    return 3.14159265 * radiance * transmittance * exp(-c_per_m * path_factor * max(depth_m, 0.0)) * 0.5 * (1.0 + normal_y);
+// water that lets `transmittance` through and takes c (1/m) away along paths `path_factor` times the depth; the sky stands in a
+// cone of `sin2_cone`: 1/n² under water, 1 in air.
+fn sky_irradiance(radiance: f32, transmittance: f32, c_per_m: f32, depth_m: f32, path_factor: f32, normal_y: f32, sin2_cone: f32) -> f32 {
+    return 3.14159265 * radiance * transmittance * exp(-c_per_m * path_factor * max(depth_m, 0.0)) * cone_share(normal_y, sin2_cone);
 }

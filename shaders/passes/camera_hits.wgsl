@@ -7,7 +7,7 @@
 #import "shared/geometry.wgsl"
 #import "shared/view.wgsl"
 
-// Local position of the surface seen (m), receiver: −1 nothing, 0 floor, k object k − 1.
+// Local position of the surface seen (m), receiver: −1 nothing; under water 0 the floor, k object k − 1; above it −2 − k.
 @group(0) @binding(16) var<storage, read_write> visible_position: array<vec4f>;
 // Unit normal towards the viewer, distance along the viewing axis to the first surface, water included (m).
 @group(0) @binding(17) var<storage, read_write> visible_normal: array<vec4f>;
@@ -143,11 +143,19 @@ fn look_from_water(ray: Ray) -> Pixel {
     let normal = -normal_from_slope(slope.x, slope.y);
     let cos_i = clamp(-dot(ray.direction, normal), 0.0, 1.0);
     let reflectance = fresnel_reflectance(cos_i, 1.0 / view.ior);
-    let sky_weight = (1.0 - reflectance) * view.ior * view.ior;
+    let out_weight = (1.0 - reflectance) * view.ior * view.ior;
+    // What stands in the air hides the sky, and outshines the mirror image of what stands in the water: one surface a pixel.
+    let leaving = refract_direction(ray.direction, normal, 1.0 / view.ior);
+    if leaving.w > 0.0 {
+        let above = trace_objects(view.instance_count, p, leaving.xyz, START_M, VERY_FAR_M);
+        if above.receiver >= 0 {
+            return Pixel(above, p + leaving.xyz * above.t, t_water, t_water, out_weight, 0.0, 0.0);
+        }
+    }
     let mirrored = Ray(p, reflect_direction(ray.direction, normal));
     let seen = trace_scene(mirrored, START_M, VERY_FAR_M);
     let weight = select(0.0, reflectance, seen.receiver >= 0);
-    return Pixel(seen, p + mirrored.direction * seen.t, t_water, t_water + seen.t, weight, sky_weight, t_water);
+    return Pixel(seen, p + mirrored.direction * seen.t, t_water, t_water + seen.t, weight, out_weight, t_water);
 }
 
 @compute @workgroup_size(8, 8)
@@ -158,7 +166,9 @@ fn camera_hits_main(@builtin(global_invocation_id) id: vec3u) {
     var pixel: Pixel;
     if over_water(ray.origin) >= 0.0 { pixel = look_from_air(ray); } else { pixel = look_from_water(ray); }
     let seen = pixel.seen.receiver >= 0;
-    visible_position[index] = vec4f(select(vec3f(0.0), pixel.position, seen), f32(pixel.seen.receiver));
+    var receiver = f32(pixel.seen.receiver);
+    if seen && over_water(pixel.position) > SURFACE_TOLERANCE_M { receiver = -2.0 - receiver; }
+    visible_position[index] = vec4f(select(vec3f(0.0), pixel.position, seen), receiver);
     visible_normal[index] = vec4f(pixel.seen.normal, pixel.first_m * dot(ray.direction, view.forward.xyz));
     visible_albedo[index] = vec4f(pixel.seen.albedo, select(0.0, pixel.path_m, seen));
     visible_transport[index] = vec4f(pixel.weight, pixel.sky_weight, pixel.sky_path_m, 0.0);

@@ -77,16 +77,16 @@ fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
     let index = band_pixel(id);
     if index >= view.width * view.row_count { return; }
     let seen = visible_position[index];
-    let receiver = i32(seen.w);
+    let dry = seen.w < -1.5;
+    let receiver = select(i32(seen.w), -2 - i32(seen.w), dry);
     var sum = vec3f(0.0);
     var outside = 0.0;
     if receiver >= 0 {
         let p = seen.xyz;
         let normal = visible_normal[index].xyz;
-        // The water at rest is y = 0; what rises above it by less than the waves is under water or not by a hair: light from the maps.
-        if p.y > view.max_height_m {
+        if dry {
             sum += sun_in_air(p, normal);
-            for (var c = 0; c < 3; c++) { sum[c] += sky_irradiance(view.sky_radiance[c], 1.0, 0.0, 0.0, 1.0, normal.y); }
+            for (var c = 0; c < 3; c++) { sum[c] += sky_irradiance(view.sky_radiance[c], 1.0, 0.0, 0.0, 1.0, normal.y, 1.0); }
         } else {
             for (var s = 0u; s < view.sun_count; s++) {
                 let r = all_receivers[s * view.receiver_count + u32(receiver)];
@@ -100,7 +100,7 @@ fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
                 }
             }
             for (var c = 0; c < 3; c++) {
-                sum[c] += sky_irradiance(view.sky_radiance[c], view.sky_transmittance, view.extinction_per_m[c], -p.y, view.sky_path_factor, normal.y);
+                sum[c] += sky_irradiance(view.sky_radiance[c], view.sky_transmittance, view.extinction_per_m[c], -p.y, view.sky_path_factor, normal.y, 1.0 / (view.ior * view.ior));
             }
         }
     }

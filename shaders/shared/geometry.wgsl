@@ -116,9 +116,14 @@ fn trace_objects(count: u32, origin: vec3f, direction: vec3f, t_min: f32, t_max:
         // Normals go with the transposed inverse of local_from_mesh, which is the transpose of mesh_from_local.
         let n = n_mesh.x * instance.mesh_x.xyz + n_mesh.y * instance.mesh_y.xyz + n_mesh.z * instance.mesh_z.xyz;
         let facing = normalize(n);
+        // Which side is seen is the triangle's to say: a shading normal turns away at silhouettes.
+        let corner = bitcast<vec3f>(geometry[hit.triangle].xyz);
+        let flat_mesh = cross(bitcast<vec3f>(geometry[hit.triangle + 1u].xyz) - corner, bitcast<vec3f>(geometry[hit.triangle + 2u].xyz) - corner);
+        let flat = flat_mesh.x * instance.mesh_x.xyz + flat_mesh.y * instance.mesh_y.xyz + flat_mesh.z * instance.mesh_z.xyz;
+        let outward = select(flat, -flat, dot(flat, n) < 0.0);
         seen.t = hit.t;
         seen.receiver = i32(i) + 1;
-        seen.normal = select(facing, -facing, dot(facing, direction) > 0.0);
+        seen.normal = select(facing, -facing, dot(outward, direction) > 0.0);
         seen.albedo = select(bitcast<vec3f>(geometry[hit.triangle + 3u].xyz), instance.albedo.xyz, instance.albedo.w > 0.5);
     }
     return seen;

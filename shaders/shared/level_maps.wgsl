@@ -101,5 +101,6 @@ fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_m
             cell = cell >> vec2u(1u);
         }
     }
-    return -1.0;
+    // Out of steps: what is this hard to get through counts as solid, so that no light leaks.
+    return t;
 }

@@ -64,10 +64,15 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
     files::check_place(&any_path)?;
     let mut scene = scene_file::load(&args.scene, Some(format), limits)?;
     let moments = moments(args, &scene.resolved, limits)?;
-    let missing: Vec<&(u32, f64)> = moments
-        .iter()
-        .filter(|(frame, _)| !(args.skip_existing && is_there(&args.output.path(*frame))))
-        .collect();
+    let mut missing: Vec<&(u32, f64)> = Vec::new();
+    for moment in &moments {
+        let (frame, time_s) = *moment;
+        scene.resolved.scene.time_s = time_s;
+        let path = args.output.path(frame);
+        if !(args.skip_existing && is_there(&path, &scene.resolved.hash())) {
+            missing.push(moment);
+        }
+    }
     for note in &scene.notes {
         eprintln!("note: {note}");
     }
@@ -116,9 +121,21 @@ fn moments(
     Ok(moments)
 }
 
-fn is_there(path: &Path) -> bool {
-    path.metadata()
-        .is_ok_and(|metadata| metadata.is_file() && metadata.len() > 0)
+/// Whether `path` is a whole picture of just this scene and moment, by the scene's hash in its metadata.
+fn is_there(path: &Path, scene_hash: &str) -> bool {
+    let Ok(bytes) = std::fs::read(path) else {
+        return false;
+    };
+    let texts = match crate::image::decode_png(&bytes) {
+        Ok(picture) => picture.texts,
+        Err(_) => match crate::image::decode_exr(&bytes) {
+            Ok(picture) => picture.texts,
+            Err(_) => return false,
+        },
+    };
+    texts
+        .get(crate::image::metadata::SCENE_HASH_KEY)
+        .is_some_and(|hash| hash == scene_hash)
 }
 
 fn one(renderer: &mut Renderer, resolved: &ResolvedScene, path: &Path) -> Result<(), CliError> {

@@ -10,7 +10,9 @@ use super::summary::{bytes, columns};
 use super::{files, scene_file};
 use crate::config::{Limits, RenderConfig};
 use crate::plan::Plan;
-use crate::render::Renderer;
+use crate::plan::{NothingCached, plan_scene};
+use crate::render::RenderError;
+use crate::scene::facts::SceneFacts;
 
 /// What to plan.
 #[derive(Clone, Debug, Args)]
@@ -27,10 +29,24 @@ pub struct PlanArgs {
 ///
 /// # Errors
 ///
-/// A bad scene, no adapter, or a plan over the memory budget.
+/// A bad scene, or a plan over the memory budget.
 pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let scene = scene_file::load(&args.scene, None, limits)?;
-    let plan = Renderer::new(config)?.plan(&scene.resolved)?;
+    // For an empty GPU: no device is opened, so a plan can be had anywhere.
+    let facts = SceneFacts::of(&scene.resolved).map_err(RenderError::from)?;
+    let empty = NothingCached {
+        arena_bytes: config.level_map_budget_mib << 20,
+    };
+    let plan = plan_scene(&facts, &empty).map_err(RenderError::from)?;
+    let budget_bytes = config.memory_budget_mib << 20;
+    if plan.peak_bytes > budget_bytes {
+        return Err(RenderError::OverBudget {
+            what: "the frame at its peak (CAUSTICA_MEMORY_BUDGET_MIB)".to_owned(),
+            needed_bytes: plan.peak_bytes,
+            budget_bytes,
+        }
+        .into());
+    }
     if args.json {
         files::print(&files::json(&plan))
     } else {

@@ -19,12 +19,20 @@ pub struct BufferPool {
 }
 
 impl BufferPool {
-    /// Starts a frame: forgets the last peak and drops what was not used for some frames.
-    pub fn begin_frame(&mut self) {
+    /// Starts a frame, with nothing lent: forgets the last peak, drops what was not used for some frames, and then, what was
+    /// used longest ago first, as much as it takes to keep no more than `free_budget_bytes`.
+    pub fn begin_frame(&mut self, free_budget_bytes: u64) {
         self.frame += 1;
+        // A frame that failed half-way has dropped what it was lent.
+        self.lent_bytes = 0;
         self.peak_bytes = self.lent_bytes;
         let frame = self.frame;
         self.free.retain(|f| f.last_used + KEEP_FRAMES >= frame);
+        while self.free_bytes() > free_budget_bytes {
+            let oldest = (0..self.free.len()).min_by_key(|&index| self.free[index].last_used);
+            let Some(index) = oldest else { break };
+            self.free.swap_remove(index);
+        }
     }
 
     /// Lends a buffer of exactly `bytes` (rounded up to 4) with `usage`; its content is undefined.

@@ -4,10 +4,10 @@ use super::fresnel::fresnel_transmittance;
 
 /// Irradiance from a uniform sky of `radiance` (W/(m² sr)) on a surface whose unit normal has the upward component
 /// `normal_y`, `depth_m` under flat water that lets `transmittance` through and takes `c_per_m` away along paths
-/// `path_factor` times the depth: π L T e^(−c f d) (1 + n_y)/2.
+/// `path_factor` times the depth: π L T e^(−c f d) F(n_y), F from [`cone_share`] with `sin2_cone` = 1/n² under water (the whole
+/// sky stands in a cone of the critical angle there) and 1 in air.
 ///
-/// The view factor (1 + n_y)/2 of a tilted plane to a hemisphere is exact (Howell, A Catalog of Radiation Heat Transfer
-/// Configuration Factors, B-3 limit); one path length for all directions is an approximation, exact for clear water.
+/// One path length and one transmittance for all directions are approximations: exact for horizontal surfaces in clear water.
 pub fn sky_irradiance(
     radiance: f64,
     transmittance: f64,
@@ -15,13 +15,35 @@ pub fn sky_irradiance(
     depth_m: f64,
     path_factor: f64,
     normal_y: f64,
+    sin2_cone: f64,
 ) -> f64 {
     std::f64::consts::PI
         * radiance
         * transmittance
         * (-c_per_m * path_factor * depth_m.max(0.0)).exp()
-        * 0.5
-        * (1.0 + normal_y)
+        * cone_share(normal_y, sin2_cone)
+}
+
+/// Irradiance from an evenly bright cone around the zenith on a plane whose unit normal has the upward component `normal_y`, as
+/// a share of that on a horizontal one; `sin2_cone` (above 0, at most 1) is the square of the sine of the cone's half angle.
+///
+/// n_y while the plane sees all of the cone, 0 when it sees none; between, with σ the half angle, x = cot σ, s = sin θ,
+/// y = −x n_y / s: ((n_y acos y − x s √(1−y²)) sin²σ + atan2(s √(1−y²), x)) / (π sin²σ). The hemisphere, sin²σ = 1, gives
+/// (1 + n_y)/2. Source: Lagarde & de Rousiers, "Moving Frostbite to PBR" (2014), listing 8, after Snyder (1996).
+pub fn cone_share(normal_y: f64, sin2_cone: f64) -> f64 {
+    let sin_cone = sin2_cone.sqrt();
+    if normal_y >= sin_cone {
+        return normal_y;
+    }
+    if normal_y <= -sin_cone {
+        return 0.0;
+    }
+    let x = (1.0 / sin2_cone - 1.0).max(0.0).sqrt();
+    let sin_tilt = (1.0 - normal_y * normal_y).max(0.0).sqrt();
+    let y = (-x * normal_y / sin_tilt).clamp(-1.0, 1.0);
+    let reach = sin_tilt * (1.0 - y * y).max(0.0).sqrt();
+    ((normal_y * y.acos() - x * reach) * sin2_cone + reach.atan2(x))
+        / (std::f64::consts::PI * sin2_cone)
 }
 
 /// Mean path per depth of sky light under flat water of index `eta`: 1/cos θ_t averaged with the transmitted flux,

@@ -74,6 +74,27 @@ pub trait Cached {
     fn arena_bytes(&self, wanted_bytes: u64) -> u64;
 }
 
+/// An empty GPU with room for level maps of `arena_bytes`: what a plan is made for where there is no device.
+#[derive(Clone, Copy, Debug)]
+pub struct NothingCached {
+    /// Size of the level-map arena.
+    pub arena_bytes: u64,
+}
+
+impl Cached for NothingCached {
+    fn has_level_map(&self, _key: &LevelMapKey) -> bool {
+        false
+    }
+
+    fn arena_bytes(&self, wanted_bytes: u64) -> u64 {
+        if wanted_bytes == 0 {
+            0
+        } else {
+            self.arena_bytes
+        }
+    }
+}
+
 /// The slots that hold what the output asks for.
 pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
     if facts.camera.is_none() {

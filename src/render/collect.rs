@@ -56,9 +56,10 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
             let mut warning = Warning::new(
                 "beams_torn",
                 format!(
-                    "{} beams of light {} still straddle receivers after quality.split_levels halvings; each corner took a third",
+                    "{} beams of light {} with {:.2} % of its flux still straddle receivers after quality.split_levels halvings; each corner took a third",
                     terms[term::TORN_COUNT],
-                    sun.light
+                    sun.light,
+                    100.0 * terms[term::TORN] as f64 / (terms[term::EMITTED] as f64).max(1.0)
                 ),
             );
             warning.flux_w = Some(grey(term::TORN));
@@ -164,7 +165,7 @@ impl<'a> ViewLayers<'a> {
             }
             Slot::VisiblePosition => {
                 fill(self.layers.get_mut(&LayerName::Position), &|v| {
-                    if v[3] < 0.0 {
+                    if v[3] == -1.0 {
                         return [0.0; 4];
                     }
                     let world =

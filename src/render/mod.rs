@@ -69,6 +69,9 @@ impl From<plan::PlanError> for RenderError {
     }
 }
 
+/// Idle polls (one a second) after which buffers kept for the next frame are given up.
+const IDLE_POLLS: u32 = 5;
+
 /// Pass, entry point, whether it attenuates, whether its flux sums are wide.
 type KernelKey = (&'static str, &'static str, bool, bool);
 
@@ -85,6 +88,8 @@ pub struct Renderer {
     arena: Option<wgpu::Buffer>,
     geometry: Option<geometry::Geometry>,
     memory_budget_bytes: u64,
+    /// Polls since the last frame.
+    idle_polls: u32,
     wide_sum_reruns: u64,
 }
 
@@ -119,6 +124,7 @@ impl Renderer {
             arena: None,
             geometry: None,
             memory_budget_bytes: config.memory_budget_mib << 20,
+            idle_polls: 0,
             wide_sum_reruns: 0,
         })
     }
@@ -171,7 +177,9 @@ impl Renderer {
                 budget_bytes: e.budget_bytes,
             })?;
         let plan_ms = ms_since(started);
-        self.pool.begin_frame();
+        let kept = self.memory_budget_bytes.saturating_sub(plan.peak_bytes);
+        self.pool.begin_frame(kept);
+        self.idle_polls = 0;
         self.timing.begin_frame();
         let result = self.execute(resolved, &facts, &plan, &missing, cancel);
         let run = match result {
@@ -252,6 +260,10 @@ impl Renderer {
     /// # Errors
     /// What the device reported in the meantime, a loss above all.
     pub fn idle(&mut self) -> Result<(), GpuError> {
+        self.idle_polls = self.idle_polls.saturating_add(1);
+        if self.idle_polls == IDLE_POLLS {
+            self.pool.clear();
+        }
         self.gpu.tidy();
         self.gpu.check()
     }

@@ -15,6 +15,9 @@ use crate::physics::{fresnel, refraction, sky};
 use crate::stats::Warning;
 use crate::waves::WaterSurface;
 
+/// Cells along the shortest wave below which caustics are washed out.
+const CELLS_PER_WAVE: f64 = 8.0;
+
 /// A sun that lights something under water.
 #[derive(Clone, Debug)]
 pub struct SunFacts {
@@ -264,6 +267,7 @@ impl SceneFacts {
                             -floor.y_m,
                             self.sky_path_factor,
                             1.0,
+                            1.0 / (self.ior * self.ior),
                         )
                     });
                 }
@@ -324,6 +328,35 @@ impl SceneFacts {
         Ok(())
     }
 
+    /// Says where a cell of the water is too large for the shortest wave.
+    fn warn_of_coarse_cells(&mut self) {
+        let waves = self
+            .surface
+            .components
+            .iter()
+            .filter(|c| c.amplitude_m > 0.0);
+        let shortest_m = waves
+            .map(|c| 1.0 / c.frequency_per_m.length())
+            .fold(f64::INFINITY, f64::min);
+        let widest_m = self
+            .suns
+            .iter()
+            .map(|sun| sun.window.size().max_element())
+            .fold(0.0, f64::max);
+        let needed = (widest_m * CELLS_PER_WAVE / shortest_m).ceil();
+        if needed > f64::from(self.quality.water_cells) {
+            let mut warning = Warning::new(
+                "waves_undersampled",
+                format!(
+                    "a water cell of {:.3} m is coarse for the shortest wave of {shortest_m:.3} m; {needed:.0} cells would do",
+                    widest_m / f64::from(self.quality.water_cells)
+                ),
+            );
+            warning.pointer = Some("/quality/water_cells".to_owned());
+            self.warnings.push(warning);
+        }
+    }
+
     fn collect_warnings(&mut self, scattering_per_m: &[f64; 3]) {
         if scattering_per_m.iter().any(|&b| b > 0.0) {
             let mut warning = Warning::new(
@@ -350,6 +383,7 @@ impl SceneFacts {
                 self.warnings.push(warning);
             }
         }
+        self.warn_of_coarse_cells();
         for sun in &self.suns {
             let steepest = self
                 .surface

@@ -684,7 +684,8 @@ pub enum ExrPixel {
 pub enum LayerName {
     /// Radiance at the camera, W/(m² sr), and alpha; EXR root R G B A.
     Radiance,
-    /// Distance along the viewing axis to the water or the first surface, m; EXR root Z; +∞ becomes 10¹⁰ m.
+    /// Distance along the viewing axis to what the ray meets first, the water's surface included, m (the other layers are of what
+    /// lies beneath it); EXR root Z; 10⁹ m and more where nothing is met.
     Depth,
     /// World normal of the surface seen through the water; EXR N.X N.Y N.Z.
     Normal,
