@@ -17,7 +17,7 @@ struct SunLight {
 @group(0) @binding(16) var<storage, read> visible_position: array<vec4f>;
 @group(0) @binding(17) var<storage, read> visible_normal: array<vec4f>;
 @group(0) @binding(20) var<storage, read_write> visible_irradiance: array<vec4f>; // W/m², w: 1 where the floor's map has no texel
-@group(0) @binding(21) var<storage, read> suns: array<SunLight, 16>;
+@group(0) @binding(21) var<uniform> suns: array<SunLight, 16>;
 
 fn texel_value(offset: u32, width: u32, texel: vec2u) -> vec3f {
     let at = 3u * (offset + texel.y * width + texel.x);

@@ -19,7 +19,7 @@ struct Resolve {
     pad_2: u32,
 }
 
-@group(0) @binding(13) var<storage, read> resolve: Resolve;
+@group(0) @binding(13) var<uniform> resolve: Resolve;
 
 @compute @workgroup_size(64)
 fn irradiance_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {

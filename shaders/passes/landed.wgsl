@@ -10,7 +10,7 @@ struct Span {
     pad_2: u32,
 }
 
-@group(0) @binding(13) var<storage, read> span: Span;
+@group(0) @binding(13) var<uniform> span: Span;
 
 // Texels of an invocation: few workgroups have few sums to add up.
 const TEXELS_EACH: u32 = 64u;

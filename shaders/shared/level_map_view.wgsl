@@ -14,4 +14,4 @@ struct LevelMapView {
     target_offset: u32,  // of this level
 }
 
-@group(0) @binding(0) var<storage, read> level_map_view: LevelMapView;
+@group(0) @binding(0) var<uniform> level_map_view: LevelMapView;

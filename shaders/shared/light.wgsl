@@ -19,7 +19,7 @@ struct Light {
     triangle_scale: f32,       // workgroup counts per m² in the energy account
 }
 
-@group(0) @binding(0) var<storage, read> light: Light;
+@group(0) @binding(0) var<uniform> light: Light;
 
 // Local (x, z) of grid vertex (i, j), which need not be whole.
 fn vertex_m(ij: vec2f) -> vec2f {

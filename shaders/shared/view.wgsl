@@ -31,7 +31,7 @@ struct View {
     sample_offset: vec2f, // of the ray from the pixel's middle, pixels
 }
 
-@group(0) @binding(0) var<storage, read> view: View;
+@group(0) @binding(0) var<uniform> view: View;
 
 // Index of the invocation's pixel within the band, or the pixel count where there is none.
 fn band_pixel(id: vec3u) -> u32 {

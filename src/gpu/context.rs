@@ -158,8 +158,6 @@ fn wanted_limits(adapter: &wgpu::Limits) -> wgpu::Limits {
         max_buffer_size: adapter.max_buffer_size,
         max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
         max_texture_dimension_2d: adapter.max_texture_dimension_2d,
-        // Eight and the parameters.
-        max_storage_buffers_per_shader_stage: adapter.max_storage_buffers_per_shader_stage.min(12),
         ..wgpu::Limits::default()
     }
 }

@@ -275,9 +275,8 @@ fn binding_type(access: Access) -> wgpu::BindingType {
         min_binding_size: None,
     };
     match access {
-        Access::Uniform(_) | Access::StorageRead => {
-            buffer(wgpu::BufferBindingType::Storage { read_only: true })
-        }
+        Access::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
+        Access::StorageRead => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
         Access::StorageWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
         Access::Texture(unsigned) => wgpu::BindingType::Texture {
             sample_type: if unsigned {

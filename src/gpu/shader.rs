@@ -95,10 +95,7 @@ fn shader_error(shader: &str, message: &str) -> GpuError {
 /// How an entry point uses a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// Read-only storage buffer of this fixed size, bytes: what is the same for all invocations.
-    ///
-    /// Not WGSL's `uniform`, which [`Module::bindings`] refuses: lavapipe 22.3 makes a shader of its own for every dispatch of
-    /// a uniform that decides a branch or a loop, and keeps it (seen: 0.8 MiB and 5 ms per frame of six passes).
+    /// Uniform buffer of this many bytes.
     Uniform(u32),
     /// Read-only storage buffer.
     StorageRead,
@@ -201,13 +198,11 @@ impl Module {
     fn access(&self, variable: &naga::GlobalVariable) -> Option<Access> {
         let inner = &self.ir.types[variable.ty].inner;
         match variable.space {
+            naga::AddressSpace::Uniform => Some(Access::Uniform(inner.size(self.ir.to_ctx()))),
             naga::AddressSpace::Storage { access }
                 if access.contains(naga::StorageAccess::STORE) =>
             {
                 Some(Access::StorageWrite)
-            }
-            naga::AddressSpace::Storage { .. } if !inner.is_dynamically_sized(&self.ir.types) => {
-                Some(Access::Uniform(inner.size(self.ir.to_ctx())))
             }
             naga::AddressSpace::Storage { .. } => Some(Access::StorageRead),
             naga::AddressSpace::Handle => match inner {
