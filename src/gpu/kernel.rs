@@ -43,7 +43,7 @@ impl Kernel {
         entry: &str,
         constants: &[(&'static str, f64)],
     ) -> Result<Self, GpuError> {
-        let module = Module::parse(path, text)?;
+        let module = Module::parse(path, gpu.adapt(text))?;
         let layout = BoundLayout::new(
             gpu,
             path,
@@ -125,7 +125,7 @@ impl RasterKernel {
         (vertex, fragment): (&str, &str),
         targets: &RasterTargets<'_>,
     ) -> Result<Self, GpuError> {
-        let module = Module::parse(path, sources.assemble(path)?)?;
+        let module = Module::parse(path, gpu.adapt(sources.assemble(path)?))?;
         let mut bindings = module.bindings(path, vertex)?;
         for found in module.bindings(path, fragment)? {
             if !bindings.contains(&found) {

@@ -203,7 +203,9 @@ impl Renderer {
                 let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some(name),
                     size: bytes.len() as u64,
-                    usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                    usage: wgpu::BufferUsages::UNIFORM
+                        | wgpu::BufferUsages::STORAGE
+                        | wgpu::BufferUsages::COPY_DST,
                     mapped_at_creation: false,
                 });
                 self.gpu.queue.write_buffer(&buffer, 0, bytes);

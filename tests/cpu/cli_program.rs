@@ -6,9 +6,16 @@ use std::path::Path;
 use std::process::{Command as Process, Output};
 
 use caustica::cli::CliError;
+use caustica::cli::animate::time_of;
+use caustica::cli::scene_file;
+use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
+use caustica::config::Limits;
+use caustica::frame::{Frame, Layer};
 use caustica::gpu::GpuError;
+use caustica::image::{Metadata, encode};
 use caustica::render::RenderError;
-use caustica::scene::{Issue, SceneError};
+use caustica::scene::{ImageFormat, Issue, LayerName, SceneError};
+use caustica::stats::Stats;
 
 use super::folder::{Folder, TRIANGLE, scene_text};
 
@@ -102,13 +109,46 @@ fn an_animation_beyond_the_range_of_time_is_refused_before_it_starts() {
     assert!(said.contains("/time_s"), "{said}");
 }
 
+/// A picture that says it is of the scene in `file` at `frame`.
+fn picture_of(file: &Path, frame: u32) -> Vec<u8> {
+    let args = SceneArgs {
+        scene: file.to_owned(),
+        overrides: SceneOverrides::default(),
+    };
+    let mut resolved = scene_file::load(&args, Some(ImageFormat::Exr), &Limits::default())
+        .unwrap()
+        .resolved;
+    resolved.scene.time_s = time_of(resolved.scene.time_s, frame, 30.0);
+    let frame = Frame {
+        width: 1,
+        height: 1,
+        layers: [(
+            LayerName::Radiance,
+            Layer {
+                channels: 4,
+                data: vec![0.0; 4],
+            },
+        )]
+        .into(),
+        stats: Stats {
+            scene_hash: resolved.hash(),
+            ..Stats::default()
+        },
+    };
+    let encoding = resolved.scene.output.encoding();
+    encode(&frame, &encoding, &Metadata::of(&frame.stats))
+        .unwrap()
+        .bytes
+}
+
 #[test]
 fn an_animation_whose_files_are_there_needs_no_gpu() {
     let folder = Folder::new();
     folder.write("a.obj", TRIANGLE);
     let scene = folder.write("scene.json", &scene_text("a.obj"));
     for frame in 3..=5 {
-        folder.write(&format!("f.{frame}.exr"), "whole");
+        let bytes = picture_of(&scene, frame);
+        std::fs::write(folder.0.join(format!("f.{frame}.exr")), bytes).unwrap();
     }
     let pattern = folder.0.join("f.%d.exr");
     let pattern = pattern.to_str().unwrap();

@@ -111,10 +111,7 @@ fn a_map_of_the_floor_needs_a_floor_and_a_window_on_it() {
     };
     assert!(window(json!([-1, -2]), json!([3, 2])).is_empty());
     assert_eq!(window(json!([-9, -9]), json!([9, 9])), ["/output/max_m"]);
-    assert_eq!(
-        window(json!([2.9, 1.9]), json!([9, 9])),
-        ["/output/max_m"]
-    );
+    assert_eq!(window(json!([2.9, 1.9]), json!([9, 9])), ["/output/max_m"]);
     assert!(window(json!([2.9, 1.9]), json!([3, 2])).is_empty());
     assert_eq!(window(json!([0, 0]), json!([0, 1])), ["/output/max_m/0"]);
     assert_eq!(window(json!([0, 2]), json!([1, 1])), ["/output/max_m/1"]);
