@@ -26,6 +26,7 @@ mod reference;
 mod reference_closed_form;
 mod reference_errors;
 mod reference_meshes;
+mod scene_facts;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
 mod scene_output;

@@ -363,3 +363,37 @@ fn a_tent_without_width_is_a_step() {
     assert_eq!(tent_share_below(1.001, 1.0, 1.0, 1.0), 1.0);
     assert!(tent_share_below(1.0, 1.0, 1.0, 1.0).is_finite());
 }
+
+/// The closed form of a tilted plane under a bright cone against a sum over directions.
+#[test]
+fn the_share_of_a_cone_is_the_sum_over_its_directions() {
+    use caustica::physics::sky::cone_share;
+    for sin2_cone in [0.1, 1.0 / (1.333 * 1.333), 0.9, 1.0_f64] {
+        for tilt in 0..=12 {
+            let tilt = f64::from(tilt) * std::f64::consts::PI / 12.0;
+            let (sin_t, cos_t) = tilt.sin_cos();
+            // Directions (θ, φ) of the cone, by midpoints.
+            let half_angle = sin2_cone.sqrt().asin();
+            let (rings, spokes) = (400, 800);
+            let mut sum = 0.0;
+            for i in 0..rings {
+                let (sin_i, cos_i) =
+                    (half_angle * (f64::from(i) + 0.5) / f64::from(rings)).sin_cos();
+                for k in 0..spokes {
+                    let phi = std::f64::consts::TAU * (f64::from(k) + 0.5) / f64::from(spokes);
+                    sum += (sin_i * phi.cos() * sin_t + cos_i * cos_t).max(0.0) * sin_i;
+                }
+            }
+            let each = half_angle * std::f64::consts::TAU / f64::from(rings * spokes);
+            let expected = sum * each / (std::f64::consts::PI * sin2_cone);
+            let found = cone_share(cos_t, sin2_cone);
+            assert!(
+                (found - expected).abs() < 1e-4,
+                "tilt {tilt}, sin² {sin2_cone}: {found}, not {expected}"
+            );
+        }
+    }
+    // The hemisphere of a dry plane, and water's cone on a wall (about a fifth).
+    assert!((cone_share(0.0, 1.0) - 0.5).abs() < 1e-12);
+    assert!((cone_share(0.0, 0.5628) - 0.2).abs() < 0.02);
+}

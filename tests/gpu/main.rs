@@ -12,6 +12,7 @@ mod flat;
 mod footprint;
 mod formulas;
 mod harness;
+mod memory;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
 mod service;

@@ -422,3 +422,19 @@ fn a_view_far_from_the_origin_is_the_same() {
     let error = largest_relative(a.as_flattened(), b.as_flattened());
     assert!(error <= 1e-4, "{error:e}");
 }
+
+#[test]
+fn a_box_in_the_air_is_seen_from_under_water() {
+    let mut scene = pool(json!({
+        "position_m": [0, -1.5, 0], "target_m": [0, 0, 0], "up": [0, 0, -1], "vertical_fov_deg": 60
+    }));
+    scene["objects"] =
+        json!([{ "mesh": "box.obj", "translation_m": [0, 2, 0], "albedo": [0.6, 0.6, 0.6] }]);
+    let frame = frame(scene);
+    let positions = harness::layer(&frame, LayerName::Position);
+    // The middle of the picture looks straight up at the underside of the unit cube.
+    let middle = positions[16 * 48 + 24];
+    assert!((middle[1] - 1.5).abs() < 1e-3, "{middle:?}");
+    let albedo = harness::layer(&frame, LayerName::Albedo);
+    assert!((albedo[16 * 48 + 24][0] - 0.6).abs() < 1e-6);
+}
