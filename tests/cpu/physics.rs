@@ -380,11 +380,11 @@ fn the_share_of_a_cone_is_the_sum_over_its_directions() {
                 let (sin_i, cos_i) =
                     (half_angle * (f64::from(i) + 0.5) / f64::from(rings)).sin_cos();
                 for k in 0..spokes {
-                    let phi = std::f64::consts::TAU * (f64::from(k) + 0.5) / f64::from(spokes);
+                    let phi = TAU * (f64::from(k) + 0.5) / f64::from(spokes);
                     sum += (sin_i * phi.cos() * sin_t + cos_i * cos_t).max(0.0) * sin_i;
                 }
             }
-            let each = half_angle * std::f64::consts::TAU / f64::from(rings * spokes);
+            let each = half_angle * TAU / f64::from(rings * spokes);
             let expected = sum * each / (std::f64::consts::PI * sin2_cone);
             let found = cone_share(cos_t, sin2_cone);
             assert!(
