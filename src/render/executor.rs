@@ -136,6 +136,7 @@ impl Renderer {
         let mut account = Vec::new();
         let too_coarse = light::needs_wide_sums(facts, index);
         for wide_sums in [false, true].into_iter().skip(usize::from(too_coarse)) {
+            let run = Run::Sun { index, wide_sums };
             let started = Recording::start(time_ms);
             if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
                 self.gpu.queue.write_buffer(
@@ -151,14 +152,7 @@ impl Renderer {
                 .copied()
                 .partition(|pass| !pass.writes.contains(&Slot::Irradiance));
             for pass in sums {
-                self.record(
-                    &mut encoder,
-                    pass,
-                    facts,
-                    Run::Sun { index, wide_sums },
-                    buffers,
-                    None,
-                )?;
+                self.record(&mut encoder, pass, facts, run, buffers, None)?;
                 self.submit_if_timed(pass, &mut encoder, time_ms)?;
             }
             self.submit(encoder, started, time_ms)?;
@@ -175,14 +169,7 @@ impl Renderer {
             let started = Recording::start(time_ms);
             let mut encoder = self.encoder("sun's maps");
             for pass in rest {
-                self.record(
-                    &mut encoder,
-                    pass,
-                    facts,
-                    Run::Sun { index, wide_sums },
-                    buffers,
-                    None,
-                )?;
+                self.record(&mut encoder, pass, facts, run, buffers, None)?;
                 self.submit_if_timed(pass, &mut encoder, time_ms)?;
             }
             self.submit(encoder, started, time_ms)?;
