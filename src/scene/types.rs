@@ -58,7 +58,7 @@ pub struct Water {
     #[schema(min_items = 3, max_items = 3)]
     pub absorption_per_m: [f64; 3],
     /// Scattering coefficient b per channel, 1/m, 0 … 10⁴. Default 0. Beams lose it (c = a + b);
-    /// light scattered into the picture is not simulated, and a warning says how much flux that is.
+    /// light scattered into the picture is not simulated, which is warned of; the energy account has the flux.
     #[schema(min_items = 3, max_items = 3)]
     pub scattering_per_m: [f64; 3],
     /// How a wave's period follows from its wavelength when `period_s` is not given. Default `finite_depth`.
