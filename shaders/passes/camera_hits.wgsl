@@ -4,6 +4,7 @@
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
 #import "shared/water_surface.wgsl"
+#import "shared/normals.wgsl"
 #import "shared/geometry.wgsl"
 #import "shared/view.wgsl"
 

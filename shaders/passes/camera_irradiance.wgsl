@@ -2,6 +2,7 @@
 // the suns themselves above it, and the sky on both.
 #import "lib/sky.wgsl"
 #import "shared/view.wgsl"
+#import "shared/normals.wgsl"
 #import "shared/geometry.wgsl"
 #import "shared/receivers.wgsl"
 #import "shared/level_maps.wgsl"

@@ -1,5 +1,6 @@
 // Level map — what a light sees of a mesh through flat water. Drawn twice from the light: nearest (front) and farthest (back).
 #import "shared/level_map_view.wgsl"
+#import "shared/normals.wgsl"
 
 @group(0) @binding(14) var<storage, read> geometry: array<vec4u>;
 
@@ -22,12 +23,7 @@ fn level_map_vertex(@builtin(vertex_index) index: u32) -> Vertex {
     var out: Vertex;
     out.clip = vec4f(2.0 * u / size - 1.0, 1.0 - 2.0 * v / size, depth, 1.0);
     out.s = s;
-    let f = unpack2x16snorm(word.w);
-    var n = vec3f(f.x, f.y, 1.0 - abs(f.x) - abs(f.y));
-    let fold = max(-n.z, 0.0);
-    n.x += select(fold, -fold, n.x >= 0.0);
-    n.y += select(fold, -fold, n.y >= 0.0);
-    out.normal = n;
+    out.normal = unpack_normal(word.w);
     return out;
 }
 

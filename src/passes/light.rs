@@ -2,7 +2,6 @@
 
 use super::gpu_data::{Light, Receiver, vec2, vec4};
 use super::slot;
-use crate::physics::refraction;
 use crate::scene::facts::{SceneFacts, SunFacts};
 
 /// Size of a receiver on the GPU.
@@ -169,9 +168,4 @@ fn floor_receiver(facts: &SceneFacts) -> Receiver {
         receiver.density_per_flux = (per_m.x * per_m.y) as f32;
     }
     receiver
-}
-
-/// Direction of the sun's light under flat water, for plans and tests.
-pub fn flat_direction(facts: &SceneFacts, index: usize) -> Option<glam::DVec3> {
-    refraction::refract_direction(-facts.suns[index].to_light, glam::DVec3::Y, facts.ior)
 }

@@ -41,6 +41,7 @@ pub fn embedded() -> ShaderSources {
         "shared/level_map_view.wgsl",
         "shared/level_maps.wgsl",
         "shared/light.wgsl",
+        "shared/normals.wgsl",
         "shared/queue.wgsl",
         "shared/receivers.wgsl",
         "shared/trace_light.wgsl",

@@ -1,6 +1,6 @@
 //! Objects in local coordinates, and the boxes their level maps are drawn in.
 
-use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4};
+use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
 
 use super::ResolvedScene;
 use crate::mesh::Mesh;
@@ -181,10 +181,5 @@ impl LevelBox {
             density_per_flux: 1.0 / texel_u.cross(texel_v).dot(axis).abs(),
             s_per_m: map_from_local[2].truncate().dot(axis),
         }
-    }
-
-    /// Middle of the box in (u, v), for tests.
-    pub fn middle(&self) -> DVec2 {
-        DVec2::splat(0.5 * f64::from(self.key.texels))
     }
 }
