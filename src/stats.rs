@@ -22,6 +22,9 @@ pub struct Stats {
     pub memory: MemoryStats,
     /// One account per sun that shines into the water.
     pub energy: Vec<EnergyAccount>,
+    /// How near the truth it is thought to be; absent unless `quality` asks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<AccuracyStats>,
     /// How radiance becomes display values.
     pub exposure: ExposureStats,
     /// Whatever was clamped, skipped, sub-sampled or not simulated.
@@ -134,6 +137,39 @@ pub struct EnergyAccount {
     pub missed_w: [f64; 3],
     /// |emitted − all the rest| / emitted, the largest of the channels; 0 when nothing is emitted.
     pub closure: f64,
+}
+
+/// How near the truth a frame is thought to be, and which dials were chosen for that.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct AccuracyStats {
+    /// Relative L1 error of the irradiance, estimated from the same light done with half the water cells
+    /// (`quality.estimate_error`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimated_error: Option<f64>,
+    /// The dials that `quality.target_error` or `quality.time_budget_ms` were turned into.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen: Option<ChosenDials>,
+}
+
+/// Dials chosen by the program.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ChosenDials {
+    /// `quality.water_cells`.
+    pub water_cells: u32,
+    /// `quality.map_texels`.
+    pub map_texels: u32,
+    /// `quality.level_map_texels`.
+    pub level_map_texels: u32,
+    /// `quality.split_levels`.
+    pub split_levels: u32,
+    /// Relative L1 error they are predicted to give.
+    pub predicted_error: f64,
+    /// Time they are predicted to take, warm, ms.
+    pub predicted_ms: f64,
+    /// Whether what was asked for is predicted to be met; otherwise these are the best that can be had.
+    pub meets: bool,
+    /// How the choice was made, in a sentence.
+    pub reason: String,
 }
 
 /// How radiance becomes display values: display = tone_curve(radiance · scale).

@@ -13,6 +13,8 @@ pub struct Timing {
     queries: Option<wgpu::QuerySet>,
     labels: Vec<&'static str>,
     by_host: bool,
+    /// Under which label everything goes for now.
+    group: Option<&'static str>,
     host_ms: Vec<(&'static str, f64)>,
 }
 
@@ -31,6 +33,7 @@ impl Timing {
             queries,
             labels: Vec::new(),
             by_host,
+            group: None,
             host_ms: Vec::new(),
         }
     }
@@ -39,11 +42,17 @@ impl Timing {
     pub fn begin_frame(&mut self) {
         self.labels.clear();
         self.host_ms.clear();
+        self.group = None;
     }
 
     /// Whether each pass is to be submitted, waited for and [noted](Self::note) on its own.
     pub fn by_host(&self) -> bool {
-        self.by_host
+        self.by_host && self.group.is_none()
+    }
+
+    /// From now on all passes count as `group`, and the host does not time them one by one: it [notes](Self::note) the group.
+    pub fn group(&mut self, group: Option<&'static str>) {
+        self.group = group;
     }
 
     /// Notes a pass that the host has timed.
@@ -60,7 +69,7 @@ impl Timing {
         let index = u32::try_from(self.labels.len())
             .ok()
             .filter(|&i| i < MAX_SPANS)?;
-        self.labels.push(label);
+        self.labels.push(self.group.unwrap_or(label));
         Some((queries, 2 * index, 2 * index + 1))
     }
 

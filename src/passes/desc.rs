@@ -11,6 +11,10 @@ pub enum Repeat {
     LevelMap,
     /// Once per sun.
     Sun,
+    /// Once per sun and only when its light is done again coarsely, to estimate the error.
+    CoarseSun,
+    /// Once, when all suns are done.
+    Frame,
     /// Once per band of the picture.
     Band,
 }
@@ -36,6 +40,11 @@ pub enum Run<'a> {
         index: usize,
         /// With 64-bit flux sums, after narrow ones have wrapped.
         wide_sums: bool,
+    },
+    /// Look at the finished maps, beside the coarse ones of these facts.
+    Frame {
+        /// The scene with coarser water and maps.
+        coarse: &'a SceneFacts,
     },
     /// Make these rows of the picture.
     Band {

@@ -80,7 +80,22 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// The uniform of `shaders/passes/irradiance.wgsl`; fields are documented there.
+    /// The uniform of `shaders/passes/estimate.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    Comparison = "Comparison" {
+        fine_width: u32,
+        fine_height: u32,
+        coarse_width: u32,
+        coarse_height: u32,
+        first_fine: u32,
+        first_coarse: u32,
+        first_group: u32,
+        blocks: u32,
+    }
+}
+
+gpu_struct! {
+    /// The uniform of `shaders/shared/resolve.wgsl`; fields are documented there.
     #[expect(missing_docs, reason = "documented in the WGSL twin")]
     Resolve = "Resolve" {
         light_w_m2: [f32; 4],
@@ -189,10 +204,11 @@ gpu_struct! {
 pub type Layout = (&'static str, usize, &'static [(&'static str, usize)]);
 
 /// Layouts of all shared structs.
-pub const LAYOUTS: [Layout; 9] = [
+pub const LAYOUTS: [Layout; 10] = [
     Light::LAYOUT,
     Receiver::LAYOUT,
     Wave::LAYOUT,
+    Comparison::LAYOUT,
     Resolve::LAYOUT,
     Span::LAYOUT,
     View::LAYOUT,

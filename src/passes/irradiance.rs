@@ -5,6 +5,7 @@ use super::gpu_data::{Resolve, vec4};
 use super::light::{light_uniform, receivers};
 use super::slot::{self, Slot};
 use super::surface::wanted_for_sun;
+use crate::scene::facts::SceneFacts;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
@@ -32,36 +33,39 @@ pub const PASS: PassDesc = PassDesc {
         }
         Ok(parts.join(" and "))
     },
-    steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else {
-            return Vec::new();
-        };
-        let mut steps = Vec::new();
-        for (number, receiver) in receivers(facts, index, |_| 0).iter().enumerate() {
-            let texels = receiver.map_width * receiver.map_height;
-            if texels == 0 {
-                continue;
-            }
-            let resolve = Resolve {
-                light_w_m2: vec4(facts.suns[index].irradiance_w_m2, 0.0),
-                first_texel: receiver.map_offset,
-                texel_count: texels,
-                first_output: receiver.irradiance_offset,
-                adds: u32::from(number == 0 && index > 0),
-                density_per_flux: receiver.density_per_flux,
-                ..Resolve::default()
-            };
-            let groups = texels.div_ceil(64);
-            let columns = groups.min(slot::MOST_GROUPS);
-            steps.push(Step {
-                entry: "irradiance_main",
-                work: Work::Compute(Groups::Direct([columns, groups.div_ceil(columns), 1])),
-                uniforms: vec![
-                    ("light", light_uniform(facts, index, wide_sums)),
-                    ("resolve", bytemuck::bytes_of(&resolve).to_vec()),
-                ],
-            });
-        }
-        steps
-    },
+    steps: |facts, run| resolve_steps("irradiance_main", facts, run),
 };
+
+/// One dispatch per receiver of a sun: its piece of the flux sums becomes W/m².
+pub(super) fn resolve_steps(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
+    let Run::Sun { index, wide_sums } = run else {
+        return Vec::new();
+    };
+    let mut steps = Vec::new();
+    for (number, receiver) in receivers(facts, index, |_| 0).iter().enumerate() {
+        let texels = receiver.map_width * receiver.map_height;
+        if texels == 0 {
+            continue;
+        }
+        let resolve = Resolve {
+            light_w_m2: vec4(facts.suns[index].irradiance_w_m2, 0.0),
+            first_texel: receiver.map_offset,
+            texel_count: texels,
+            first_output: receiver.irradiance_offset,
+            adds: u32::from(number == 0 && index > 0),
+            density_per_flux: receiver.density_per_flux,
+            ..Resolve::default()
+        };
+        let groups = texels.div_ceil(64);
+        let columns = groups.min(slot::MOST_GROUPS);
+        steps.push(Step {
+            entry,
+            work: Work::Compute(Groups::Direct([columns, groups.div_ceil(columns), 1])),
+            uniforms: vec![
+                ("light", light_uniform(facts, index, wide_sums)),
+                ("resolve", bytemuck::bytes_of(&resolve).to_vec()),
+            ],
+        });
+    }
+    steps
+}

@@ -7,8 +7,10 @@
 pub mod beams;
 pub mod camera_hits;
 pub mod camera_irradiance;
+pub mod coarse_irradiance;
 pub mod deposit;
 pub mod desc;
+pub mod estimate;
 pub mod gpu_data;
 pub mod hits;
 pub mod irradiance;
@@ -27,7 +29,7 @@ pub use desc::{Groups, PassDesc, Repeat, Step, Work};
 pub use slot::Slot;
 
 /// All passes in the order they run.
-pub const ALL: [&PassDesc; 12] = [
+pub const ALL: [&PassDesc; 14] = [
     &level_map::PASS,
     &level_map_pyramid::PASS,
     &surface::PASS,
@@ -37,6 +39,8 @@ pub const ALL: [&PassDesc; 12] = [
     &split::PASS,
     &landed::PASS,
     &irradiance::PASS,
+    &coarse_irradiance::PASS,
+    &estimate::PASS,
     &camera_hits::PASS,
     &camera_irradiance::PASS,
     &shade::PASS,

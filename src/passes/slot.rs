@@ -63,6 +63,10 @@ pub enum Slot {
     Energy,
     /// Irradiance maps.
     Irradiance,
+    /// Irradiance maps of the light done coarsely.
+    CoarseIrradiance,
+    /// How far those are from the maps.
+    Differences,
     /// What pixels see: where.
     VisiblePosition,
     /// What pixels see: normal and distance.
@@ -91,7 +95,7 @@ pub struct SlotInfo {
 }
 
 /// All slots.
-pub const SLOTS: [Slot; 20] = [
+pub const SLOTS: [Slot; 22] = [
     Slot::Waves,
     Slot::Geometry,
     Slot::Instances,
@@ -106,6 +110,8 @@ pub const SLOTS: [Slot; 20] = [
     Slot::Flux,
     Slot::Energy,
     Slot::Irradiance,
+    Slot::CoarseIrradiance,
+    Slot::Differences,
     Slot::VisiblePosition,
     Slot::VisibleNormal,
     Slot::VisibleAlbedo,
@@ -180,6 +186,16 @@ impl Slot {
                 Lifetime::Sun,
             ),
             Self::Irradiance => ("irradiance", "linear RGB per texel, W/m²", Lifetime::Frame),
+            Self::CoarseIrradiance => (
+                "coarse_irradiance",
+                "linear RGB per texel of the light done coarsely, W/m²",
+                Lifetime::Frame,
+            ),
+            Self::Differences => (
+                "differences",
+                "sums of |fine − coarse| and fine per workgroup, W/m²",
+                Lifetime::Frame,
+            ),
             Self::VisiblePosition => (
                 "visible_position",
                 "surface point m and receiver per pixel",
@@ -219,6 +235,11 @@ impl Slot {
         }
     }
 
+    /// Whether it holds finished irradiance maps.
+    pub fn is_map(self) -> bool {
+        matches!(self, Self::Irradiance | Self::CoarseIrradiance)
+    }
+
     /// The slot of this name.
     pub fn by_name(name: &str) -> Option<Self> {
         SLOTS.into_iter().find(|slot| slot.info().name == name)
@@ -238,6 +259,8 @@ impl Slot {
             Self::Flux => 8 * channels * u64::from(flux_texels(facts)),
             Self::Energy => 8 * ENERGY_TERMS,
             Self::Irradiance => 12 * irradiance_texels(facts),
+            Self::CoarseIrradiance => 12 * irradiance_texels(&facts.coarse()),
+            Self::Differences => 16 * u64::from(super::estimate::groups(facts)),
             Self::VisiblePosition
             | Self::VisibleNormal
             | Self::VisibleAlbedo

@@ -97,8 +97,13 @@ impl Cached for NothingCached {
 
 /// The slots that hold what the output asks for.
 pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
+    let estimate =
+        (facts.quality.estimate_error && !facts.suns.is_empty()).then_some(Slot::Differences);
     if facts.camera.is_none() {
-        return BTreeSet::from([Slot::Irradiance]);
+        return BTreeSet::from([Slot::Irradiance])
+            .into_iter()
+            .chain(estimate)
+            .collect();
     }
     facts
         .layers
@@ -110,6 +115,7 @@ pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
             LayerName::Albedo => Slot::VisibleAlbedo,
             LayerName::Irradiance => Slot::VisibleIrradiance,
         })
+        .chain(estimate)
         .collect()
 }
 
@@ -223,7 +229,8 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
 fn runs(repeat: Repeat, facts: &SceneFacts, missing: usize) -> u32 {
     match repeat {
         Repeat::LevelMap => u32::try_from(missing).unwrap_or(u32::MAX),
-        Repeat::Sun => u32::try_from(facts.suns.len()).unwrap_or(u32::MAX),
+        Repeat::Sun | Repeat::CoarseSun => u32::try_from(facts.suns.len()).unwrap_or(u32::MAX),
+        Repeat::Frame => 1,
         Repeat::Band => facts
             .camera
             .map_or(0, |c| c.height.div_ceil(slot::band_rows(c.width, c.height))),

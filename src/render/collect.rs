@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::RenderError;
+use crate::accuracy::estimate::{FrameComparison, estimate_error};
 use crate::frame::Layer;
 use crate::passes::slot::{self, ENERGY_TERMS, Slot};
-use crate::passes::{light, term};
+use crate::passes::{estimate, light, term};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
 use crate::scene::{LayerName, Receiver};
@@ -210,6 +211,38 @@ fn check_finite(name: LayerName, layer: &Layer, width: u32) -> Result<(), Render
             })
         }
     }
+}
+
+/// The frame's estimate of its own relative L1 error; `None` where no light landed.
+pub(super) fn estimated_error(
+    facts: &SceneFacts,
+    raw: &[u64],
+    differences: &[[f32; 4]],
+) -> Option<f64> {
+    let coarse = facts.coarse();
+    let (mut difference_w, mut landed_w) = (0.0, 0.0);
+    for (comparison, texel_m2) in estimate::compared(facts, &coarse) {
+        let first = comparison.first_group as usize;
+        let groups = estimate::groups_of(&comparison) as usize;
+        for sums in &differences[first..first + groups] {
+            difference_w += f64::from(sums[0]) * texel_m2;
+            landed_w += f64::from(sums[1]) * texel_m2;
+        }
+    }
+    let (mut torn_m2, mut landed_m2) = (0.0, 0.0);
+    for (index, terms) in raw.chunks_exact(ENERGY_TERMS as usize).enumerate() {
+        let per_count = 1.0 / light::energy_scale(facts, index);
+        torn_m2 += terms[term::TORN] as f64 * per_count;
+        landed_m2 += terms[term::LANDED] as f64 * per_count;
+    }
+    (landed_w > 0.0 && landed_m2 > 0.0).then(|| {
+        estimate_error(&FrameComparison {
+            difference: difference_w / landed_w,
+            cells_ratio: f64::from(facts.quality.water_cells)
+                / f64::from(coarse.quality.water_cells),
+            torn: torn_m2 / landed_m2,
+        })
+    })
 }
 
 /// Which texels of the irradiance array make the requested map.

@@ -10,13 +10,13 @@ use super::commands::Recording;
 use super::{RenderError, Renderer, RunResult, collect, geometry, ms_since, slot_name};
 use crate::gpu::{GpuError, readback};
 use crate::passes::desc::{PassDesc, Repeat, Run};
-use crate::passes::slot::{self, ENERGY_TERMS, Slot, band_rows};
+use crate::passes::slot::{self, ENERGY_TERMS, Lifetime, Slot, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
 use crate::scene::{LayerName, ResolvedScene};
-use crate::stats::TimeStats;
+use crate::stats::{AccuracyStats, TimeStats};
 
 /// Bytes of one sun's energy account.
 const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
@@ -93,11 +93,24 @@ impl Renderer {
             accounts.extend(self.run_sun(facts, sun, &of(Repeat::Sun), buffers, &mut time_ms)?);
         }
         let (energy, warnings) = collect::energy(facts, &accounts);
+        let estimate = of(Repeat::Frame);
+        let accuracy = if estimate.is_empty() {
+            None
+        } else {
+            let light = [of(Repeat::Sun), of(Repeat::CoarseSun)].concat();
+            let differences =
+                self.compare(facts, &light, &estimate, buffers, cancel, &mut time_ms)?;
+            Some(AccuracyStats {
+                estimated_error: collect::estimated_error(facts, &accounts, &differences),
+                chosen: None,
+            })
+        };
         let mut result = RunResult {
             width: 0,
             height: 0,
             layers: BTreeMap::new(),
             energy,
+            accuracy,
             warnings,
             time_ms,
             peak_bytes: 0,
@@ -150,7 +163,7 @@ impl Renderer {
             let (sums, rest): (Vec<&'static PassDesc>, Vec<&'static PassDesc>) = passes
                 .iter()
                 .copied()
-                .partition(|pass| !pass.writes.contains(&Slot::Irradiance));
+                .partition(|pass| pass.writes.iter().all(|slot| !slot.is_map()));
             for pass in sums {
                 self.record(&mut encoder, pass, facts, run, buffers, None)?;
                 self.submit_if_timed(pass, &mut encoder, time_ms)?;
@@ -176,6 +189,49 @@ impl Renderer {
             break;
         }
         Ok(account)
+    }
+
+    /// Does the light again coarsely, and returns the sums of the differences, workgroup by workgroup.
+    fn compare(
+        &mut self,
+        facts: &SceneFacts,
+        light: &[&'static PassDesc],
+        estimate: &[&'static PassDesc],
+        buffers: &FrameBuffers,
+        cancel: &CancellationToken,
+        time_ms: &mut TimeStats,
+    ) -> Result<Vec<[f32; 4]>, RenderError> {
+        let coarse = facts.coarse();
+        let light: Vec<&'static PassDesc> = light
+            .iter()
+            .copied()
+            .filter(|pass| !pass.writes.contains(&Slot::Irradiance))
+            .collect();
+        let gpu_before = time_ms.gpu;
+        let group = passes::coarse_irradiance::PASS.name;
+        self.timing.group(Some(group));
+        for sun in 0..coarse.suns.len() {
+            check_cancelled(cancel)?;
+            self.run_sun(&coarse, sun, &light, buffers, time_ms)?;
+        }
+        self.timing.group(None);
+        if self.timing.by_host() {
+            self.timing.note(group, time_ms.gpu - gpu_before);
+        }
+        let started = Recording::start(time_ms);
+        let mut encoder = self.encoder("estimate");
+        for pass in estimate {
+            let run = Run::Frame { coarse: &coarse };
+            self.record(&mut encoder, pass, facts, run, buffers, None)?;
+            self.submit_if_timed(pass, &mut encoder, time_ms)?;
+        }
+        self.submit(encoder, started, time_ms)?;
+        let started = Instant::now();
+        let bytes = Slot::Differences.bytes(facts);
+        let differences =
+            readback::read(&self.gpu, buffers.get(slot_name(Slot::Differences)), bytes)?;
+        time_ms.readback += ms_since(started);
+        Ok(differences)
     }
 
     #[expect(
@@ -214,7 +270,11 @@ impl Renderer {
                 }
                 self.submit(encoder, started, &mut result.time_ms)?;
                 let started = Instant::now();
-                for slot in plan::awaited(facts) {
+                let layers = plan::awaited(facts);
+                for slot in layers
+                    .into_iter()
+                    .filter(|s| s.info().lifetime == Lifetime::Band)
+                {
                     let wanted = if slot == Slot::Radiance {
                         sample.ends_radiance
                     } else {

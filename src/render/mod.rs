@@ -24,7 +24,8 @@ use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
 use crate::scene::{ResolvedScene, SceneError};
 use crate::stats::{
-    AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats, TimeStats, Warning,
+    AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
+    TimeStats, Warning,
 };
 
 pub use self_check::{SelfCheck, SelfCheckItem, twin_error};
@@ -219,6 +220,7 @@ impl Renderer {
                 level_maps: cache_change(&cache_before, &self.level_maps.stats()),
             },
             energy: run.energy,
+            accuracy: run.accuracy,
             exposure: exposure(&facts, resolved),
             warnings: plan.warnings,
         };
@@ -318,6 +320,7 @@ struct RunResult {
     height: u32,
     layers: BTreeMap<crate::scene::LayerName, crate::frame::Layer>,
     energy: Vec<crate::stats::EnergyAccount>,
+    accuracy: Option<AccuracyStats>,
     warnings: Vec<Warning>,
     time_ms: TimeStats,
     peak_bytes: u64,

@@ -1,4 +1,4 @@
-//! The scene: what a request may say (`types`), how JSON becomes it (`json` reads text, `strict` reads values, `parse` puts
+//! The scene: what a request may say (`types`, `quality`), how JSON becomes it (`json` reads text, `strict` reads values, `parse` puts
 //! them together), what is refused (`ranges`, `validate`, `validate_output`), how single fields are replaced from outside
 //! (`overrides`), how mesh ids become meshes (`resolve`), and the figures everything downstream is decided from (`facts`).
 //!
@@ -14,6 +14,7 @@ pub mod overrides;
 pub mod parse;
 pub mod placement;
 mod pointer;
+pub mod quality;
 pub mod ranges;
 pub mod resolve;
 mod strict;
@@ -23,5 +24,6 @@ mod validate_output;
 pub mod window;
 
 pub use error::{Issue, IssueKind, SceneError};
+pub use quality::{Method, Placement, Quality};
 pub use resolve::{ResolvedScene, resolve};
 pub use types::*;

@@ -8,7 +8,8 @@ use serde_json::{Map, Number, Value, json};
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
-use super::types::{IrradianceMapOutput, Output, Quality, ViewOutput};
+use super::quality::Quality;
+use super::types::{IrradianceMapOutput, Output, ViewOutput};
 
 /// A field that may be replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -82,6 +82,11 @@ pub const FIELD_OF_VIEW: Range = Range::new(0.1, 179.0, "degrees");
 /// `exposure_ev`.
 pub const EXPOSURE: Range = Range::new(-40.0, 40.0, "stops");
 
+/// `quality.target_error`.
+pub const TARGET_ERROR: Range = Range::new(1e-4, 0.5, "");
+/// `quality.time_budget_ms`.
+pub const TIME_BUDGET: Range = Range::new(0.1, 3.6e6, "ms");
+
 /// Texels along a side of a floor map that does not say.
 pub const DEFAULT_MAP_SIDE: u32 = 512;
 

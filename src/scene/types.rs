@@ -5,10 +5,8 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::parse::{inner, integer, integer_of, optional_integer, rotation, tagged, wrong_type};
-use super::ranges::{
-    Integer, LevelMapTexels, LightIndex, MapSide, MapTexels, PixelSamples, PngBits, ReceiverIndex,
-    SplitLevels, ViewSide, WaterCells,
-};
+use super::quality::Quality;
+use super::ranges::{Integer, LightIndex, MapSide, PngBits, ReceiverIndex, ViewSide};
 use super::strict::carry;
 
 /// A scene: water, receivers, lights, a camera and what to make of them.
@@ -350,69 +348,6 @@ fn default_up() -> [f64; 3] {
 
 fn default_fov() -> f64 {
     45.0
-}
-
-/// The dials that trade accuracy for time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Quality {
-    /// How light is carried to the receivers. Default `level_map`.
-    pub method: Method,
-    /// Where on a mesh a beam ends. Default `hit`.
-    pub placement: Placement,
-    /// Water cells along each side of a light's window, 2 … 2048. Default 256. The error falls with its square.
-    #[serde(deserialize_with = "integer::<WaterCells, _>")]
-    #[schema(minimum = 2, maximum = 2048)]
-    pub water_cells: u32,
-    /// Texels along the longer side of the floor's irradiance map of a view, 16 … 4096. Default 512.
-    #[serde(deserialize_with = "integer::<MapTexels, _>")]
-    #[schema(minimum = 16, maximum = 4096)]
-    pub map_texels: u32,
-    /// Texels along each side of a mesh's level map and of its irradiance map, a power of two, 16 … 2048. Default 256.
-    #[serde(deserialize_with = "integer::<LevelMapTexels, _>")]
-    #[schema(minimum = 16, maximum = 2048)]
-    pub level_map_texels: u32,
-    /// How often beams that straddle receivers are halved, 0 … 4. Default 2.
-    #[serde(deserialize_with = "integer::<SplitLevels, _>")]
-    #[schema(minimum = 0, maximum = 4)]
-    pub split_levels: u32,
-    /// Rays per pixel of a view along each side, 1 … 8. Default 1. Smooths edges; the camera's passes cost its square. Layers
-    /// other than radiance are never averaged: they are those of the pixel's middle.
-    #[serde(deserialize_with = "integer::<PixelSamples, _>")]
-    #[schema(minimum = 1, maximum = 8)]
-    pub pixel_samples: u32,
-}
-
-impl Default for Quality {
-    fn default() -> Self {
-        Self {
-            method: Method::LevelMap,
-            placement: Placement::Hit,
-            water_cells: 256,
-            map_texels: 512,
-            level_map_texels: 256,
-            split_levels: 2,
-            pixel_samples: 1,
-        }
-    }
-}
-
-/// How light is carried to the receivers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Method {
-    /// Beams between exact hits on floor and level maps (Tipprasert 2006).
-    #[default]
-    LevelMap,
-}
-
-/// Where on a mesh a beam ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Placement {
-    /// Rays are marched into the level map until they cross it.
-    #[default]
-    Hit,
 }
 
 /// What to make, told apart by `kind`.

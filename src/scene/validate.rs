@@ -5,8 +5,9 @@ use glam::DVec3;
 use super::error::SceneError;
 use super::findings::Findings;
 use super::parse::ROTATION_LENGTH_TOLERANCE;
+use super::quality::Quality;
 use super::ranges::{self, number};
-use super::types::{Camera, Floor, Light, Object, Quality, Scale, Scene, Water, Wave};
+use super::types::{Camera, Floor, Light, Object, Scale, Scene, Water, Wave};
 use super::validate_output;
 use crate::config::Limits;
 
@@ -201,4 +202,17 @@ fn quality(findings: &mut Findings, quality: &Quality) {
     findings.integer::<ranges::LevelMapTexels>("/quality/level_map_texels", level_map_texels);
     findings.integer::<ranges::SplitLevels>("/quality/split_levels", quality.split_levels);
     findings.integer::<ranges::PixelSamples>("/quality/pixel_samples", quality.pixel_samples);
+    if let Some(target) = quality.target_error {
+        findings.number("/quality/target_error", target, &ranges::TARGET_ERROR);
+    }
+    if let Some(budget_ms) = quality.time_budget_ms {
+        findings.number("/quality/time_budget_ms", budget_ms, &ranges::TIME_BUDGET);
+        if quality.target_error.is_some() {
+            findings.invalid(
+                "/quality/time_budget_ms",
+                "time_budget_ms and target_error are both given",
+                "one of the two",
+            );
+        }
+    }
 }

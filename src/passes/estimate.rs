@@ -1,0 +1,147 @@
+//! Estimate — compares the maps with those of the light done coarsely: the frame's own estimate of its error.
+
+use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
+use super::gpu_data::Comparison;
+use super::slot::{self, Slot};
+use super::surface::wanted_for_sun;
+use crate::scene::Receiver;
+use crate::scene::facts::{FloorMap, SceneFacts};
+
+/// Places (texels or blocks of them) of a workgroup, as in the shader.
+pub const PLACES_PER_GROUP: u32 = 64 * 16;
+
+/// See the module.
+pub const PASS: PassDesc = PassDesc {
+    name: "estimate",
+    repeat: Repeat::Frame,
+    reads: &[Slot::Irradiance, Slot::CoarseIrradiance],
+    reads_if_present: &[],
+    writes: &[Slot::Differences],
+    wanted: |facts| {
+        wanted(facts)?;
+        Ok("the maps are compared with those of the light done coarsely".to_owned())
+    },
+    steps: |facts, run| {
+        let Run::Frame { coarse } = run else {
+            return Vec::new();
+        };
+        compared(facts, coarse)
+            .into_iter()
+            .map(|(comparison, _)| {
+                let groups = groups_of(&comparison);
+                let columns = groups.min(slot::MOST_GROUPS);
+                Step {
+                    entry: "estimate_main",
+                    work: Work::Compute(Groups::Direct([columns, groups.div_ceil(columns), 1])),
+                    uniforms: vec![("comparison", bytemuck::bytes_of(&comparison).to_vec())],
+                }
+            })
+            .collect()
+    },
+};
+
+/// Whether the error is to be estimated.
+pub(super) fn wanted(facts: &SceneFacts) -> Result<String, String> {
+    if !facts.quality.estimate_error {
+        return Err("quality.estimate_error is false".to_owned());
+    }
+    wanted_for_sun(facts)
+}
+
+/// Each map that is compared, and the area of its texels, m².
+pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<(Comparison, f64)> {
+    let mut all: Vec<(Comparison, f64)> = Vec::new();
+    let mut first_group = 0;
+    let mut add = |mut comparison: Comparison, texel_m2: f64| {
+        comparison.first_group = first_group;
+        first_group += groups_of(&comparison);
+        all.push((comparison, texel_m2));
+    };
+    if let (Some(fine), Some(low)) = (facts.floor_map, coarse.floor_map) {
+        let size = fine.rect.size();
+        let comparison = Comparison {
+            fine_width: fine.width,
+            fine_height: fine.height,
+            coarse_width: low.width,
+            coarse_height: low.height,
+            blocks: u32::from(facts.camera.is_none()),
+            ..Comparison::default()
+        };
+        add(
+            comparison,
+            size.x * size.y / (f64::from(fine.width) * f64::from(fine.height)),
+        );
+    }
+    let side = facts.quality.level_map_texels;
+    let mut nth = 0;
+    for sun in &facts.suns {
+        for (object, level_box) in sun.boxes.iter().enumerate() {
+            let Some(level_box) = level_box else { continue };
+            let counts = match facts.map_receiver {
+                None => true,
+                Some(Receiver::Object(wanted)) => wanted as usize == object,
+                Some(Receiver::Floor(_)) => false,
+            };
+            if counts {
+                let place = |facts: &SceneFacts| {
+                    slot::floor_texels(facts) + nth * slot::object_texels(facts)
+                };
+                let comparison = Comparison {
+                    fine_width: side,
+                    fine_height: side,
+                    coarse_width: side,
+                    coarse_height: side,
+                    first_fine: place(facts),
+                    first_coarse: place(coarse),
+                    blocks: 1,
+                    ..Comparison::default()
+                };
+                add(comparison, 1.0 / level_box.density_per_flux);
+            }
+            nth += 1;
+        }
+    }
+    all
+}
+
+/// Workgroups that compare a map.
+pub fn groups_of(comparison: &Comparison) -> u32 {
+    let places = if comparison.blocks == 1 {
+        comparison.coarse_width * comparison.coarse_height
+    } else {
+        comparison.fine_width * comparison.fine_height
+    };
+    places.div_ceil(PLACES_PER_GROUP)
+}
+
+/// Workgroups of all comparisons.
+pub fn groups(facts: &SceneFacts) -> u32 {
+    compared(facts, &facts.coarse())
+        .iter()
+        .map(|(comparison, _)| groups_of(comparison))
+        .sum()
+}
+
+impl SceneFacts {
+    /// The same scene with half the water cells and, where that divides evenly, half the floor's texels: a quarter of the work.
+    ///
+    /// A view's map may always be halved, since it is looked up between its texels.
+    #[must_use]
+    pub fn coarse(&self) -> Self {
+        let halved = |texels: u32| {
+            if self.camera.is_some() || texels.is_multiple_of(2) {
+                texels.div_ceil(2)
+            } else {
+                texels
+            }
+        };
+        let mut coarse = self.clone();
+        coarse.quality.water_cells = (self.quality.water_cells / 2).max(1);
+        coarse.floor_map = self.floor_map.map(|map| FloorMap {
+            width: halved(map.width),
+            height: halved(map.height),
+            ..map
+        });
+        coarse
+    }
+}

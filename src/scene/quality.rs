@@ -1,0 +1,86 @@
+//! The dials, and asking for accuracy or time instead of setting them.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use super::parse::integer;
+use super::ranges::{LevelMapTexels, MapTexels, PixelSamples, SplitLevels, WaterCells};
+
+/// The dials that trade accuracy for time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Quality {
+    /// How light is carried to the receivers. Default `level_map`.
+    pub method: Method,
+    /// Where on a mesh a beam ends. Default `hit`.
+    pub placement: Placement,
+    /// Water cells along each side of a light's window, 2 … 2048. Default 256. The error falls with its square.
+    #[serde(deserialize_with = "integer::<WaterCells, _>")]
+    #[schema(minimum = 2, maximum = 2048)]
+    pub water_cells: u32,
+    /// Texels along the longer side of the floor's irradiance map of a view, 16 … 4096. Default 512.
+    #[serde(deserialize_with = "integer::<MapTexels, _>")]
+    #[schema(minimum = 16, maximum = 4096)]
+    pub map_texels: u32,
+    /// Texels along each side of a mesh's level map and of its irradiance map, a power of two, 16 … 2048. Default 256.
+    #[serde(deserialize_with = "integer::<LevelMapTexels, _>")]
+    #[schema(minimum = 16, maximum = 2048)]
+    pub level_map_texels: u32,
+    /// How often beams that straddle receivers are halved, 0 … 4. Default 2.
+    #[serde(deserialize_with = "integer::<SplitLevels, _>")]
+    #[schema(minimum = 0, maximum = 4)]
+    pub split_levels: u32,
+    /// Relative L1 error of the irradiance to stay under, 0.0001 … 0.5: the program then chooses the dials above itself, and those
+    /// that are given do not count (`stats.accuracy.chosen` has what they became). Not with `time_budget_ms`. Default: absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 0.0001, maximum = 0.5)]
+    pub target_error: Option<f64>,
+    /// Time to stay under, ms, 0.1 … 3 600 000, on the machine that the calibration is of: the program then chooses the dials above
+    /// for the least error it predicts. Not with `target_error`. Default: absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 0.1, maximum = 3_600_000.0)]
+    pub time_budget_ms: Option<f64>,
+    /// Whether the frame estimates its own error (`stats.accuracy.estimated_error`) by doing the light a second time with half the
+    /// water cells. Default false.
+    pub estimate_error: bool,
+    /// Rays per pixel of a view along each side, 1 … 8. Default 1. Smooths edges; the camera's passes cost its square. Layers
+    /// other than radiance are never averaged: they are those of the pixel's middle.
+    #[serde(deserialize_with = "integer::<PixelSamples, _>")]
+    #[schema(minimum = 1, maximum = 8)]
+    pub pixel_samples: u32,
+}
+
+impl Default for Quality {
+    fn default() -> Self {
+        Self {
+            method: Method::LevelMap,
+            placement: Placement::Hit,
+            water_cells: 256,
+            map_texels: 512,
+            level_map_texels: 256,
+            split_levels: 2,
+            target_error: None,
+            time_budget_ms: None,
+            estimate_error: false,
+            pixel_samples: 1,
+        }
+    }
+}
+
+/// How light is carried to the receivers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Beams between exact hits on floor and level maps (Tipprasert 2006).
+    #[default]
+    LevelMap,
+}
+
+/// Where on a mesh a beam ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Placement {
+    /// Rays are marched into the level map until they cross it.
+    #[default]
+    Hit,
+}
