@@ -4,6 +4,8 @@ use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::tuning::Calibration;
+
 /// Which adapters may be used.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize, ToSchema,
@@ -44,6 +46,14 @@ pub struct RenderConfig {
     /// Folder to write every assembled shader to.
     #[arg(long, env = "CAUSTICA_SHADER_DUMP", global = true)]
     pub shader_dump: Option<std::path::PathBuf>,
+    /// Calibration that `caustica calibrate` wrote on this machine; without it predictions are for software Vulkan on two cores.
+    #[arg(long, env = "CAUSTICA_CALIBRATION", value_name = "FILE", value_parser = calibration, global = true)]
+    pub calibration: Option<Calibration>,
+}
+
+/// Reads `--calibration`.
+fn calibration(text: &str) -> Result<Calibration, String> {
+    Calibration::load(std::path::Path::new(text)).map_err(|error| error.to_string())
 }
 
 impl Default for RenderConfig {
@@ -53,6 +63,7 @@ impl Default for RenderConfig {
             memory_budget_mib: 2048,
             level_map_budget_mib: 64,
             shader_dump: None,
+            calibration: None,
         }
     }
 }

@@ -45,6 +45,7 @@
 //! | [`render`] | runs plans; self-check |
 //! | [`reference`] | float64 truth by plain rays: another algorithm, not a port |
 //! | [`accuracy`] | error metrics |
+//! | [`tuning`] | from a wanted error or time to dials |
 //! | [`image`] | PNG, EXR, tone curve |
 //! | [`jobs`] | bounded queue and the one GPU thread |
 //! | [`http`] | routes; the only place that knows status codes is its error table |
@@ -70,4 +71,5 @@ pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod stats;
+pub mod tuning;
 pub mod waves;

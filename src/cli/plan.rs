@@ -11,7 +11,7 @@ use super::{files, scene_file};
 use crate::config::{Limits, RenderConfig};
 use crate::plan::Plan;
 use crate::plan::{NothingCached, plan_scene};
-use crate::render::RenderError;
+use crate::render::{RenderError, Renderer};
 use crate::scene::facts::SceneFacts;
 
 /// What to plan.
@@ -32,12 +32,18 @@ pub struct PlanArgs {
 /// A bad scene, or a plan over the memory budget.
 pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let scene = scene_file::load(&args.scene, None, limits)?;
-    // For an empty GPU: no device is opened, so a plan can be had anywhere.
-    let facts = SceneFacts::of(&scene.resolved).map_err(RenderError::from)?;
-    let empty = NothingCached {
-        arena_bytes: config.level_map_budget_mib << 20,
+    let quality = &scene.resolved.scene.quality;
+    let plan = if quality.target_error.is_some() || quality.time_budget_ms.is_some() {
+        // Dials are chosen by looking at the scene.
+        Renderer::new(config)?.plan(&scene.resolved)?
+    } else {
+        // For an empty GPU: no device is opened, so a plan can be had anywhere.
+        let facts = SceneFacts::of(&scene.resolved).map_err(RenderError::from)?;
+        let empty = NothingCached {
+            arena_bytes: config.level_map_budget_mib << 20,
+        };
+        plan_scene(&facts, &empty).map_err(RenderError::from)?
     };
-    let plan = plan_scene(&facts, &empty).map_err(RenderError::from)?;
     let budget_bytes = config.memory_budget_mib << 20;
     if plan.peak_bytes > budget_bytes {
         return Err(RenderError::OverBudget {

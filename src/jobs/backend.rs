@@ -14,8 +14,8 @@ pub trait RenderBackend {
     /// Where it runs.
     fn adapter(&self) -> AdapterStats;
 
-    /// What would run, given what is cached now.
-    fn plan(&self, resolved: &ResolvedScene) -> Result<Plan, RenderError>;
+    /// What would run, given what is cached now; looks at the scene where dials are to be chosen.
+    fn plan(&mut self, resolved: &ResolvedScene) -> Result<Plan, RenderError>;
 
     /// Renders; `cancel` is looked at between submissions.
     fn render(
@@ -45,7 +45,7 @@ impl RenderBackend for Renderer {
         Renderer::adapter(self)
     }
 
-    fn plan(&self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
+    fn plan(&mut self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
         Renderer::plan(self, resolved)
     }
 

@@ -14,7 +14,7 @@ use crate::passes::{self, PassDesc, Repeat, Slot, slot};
 use crate::scene::LayerName;
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
-use crate::stats::{AbsentPass, Warning};
+use crate::stats::{AbsentPass, ChosenDials, Warning};
 
 /// The shortest list of passes that makes what a scene asks for, and why.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -27,6 +27,9 @@ pub struct Plan {
     pub slots: Vec<PlannedSlot>,
     /// Most bytes held on the GPU at once, level maps included.
     pub peak_bytes: u64,
+    /// The dials that `quality.target_error` or `quality.time_budget_ms` were turned into; absent where neither is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen: Option<ChosenDials>,
     /// What the plan leaves out or sub-samples.
     pub warnings: Vec<Warning>,
 }
@@ -95,10 +98,27 @@ impl Cached for NothingCached {
     }
 }
 
+/// A GPU that holds every level map: what a warm frame is planned for.
+#[derive(Clone, Copy, Debug)]
+pub struct WarmCache;
+
+impl Cached for WarmCache {
+    fn has_level_map(&self, _key: &LevelMapKey) -> bool {
+        true
+    }
+
+    fn arena_bytes(&self, wanted_bytes: u64) -> u64 {
+        wanted_bytes
+    }
+}
+
 /// The slots that hold what the output asks for.
 pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
     let estimate =
         (facts.quality.estimate_error && !facts.suns.is_empty()).then_some(Slot::Differences);
+    if facts.only_estimate {
+        return estimate.into_iter().collect();
+    }
     if facts.camera.is_none() {
         return BTreeSet::from([Slot::Irradiance])
             .into_iter()
@@ -173,6 +193,7 @@ pub fn plan(
         absent,
         peak_bytes: slots.iter().map(|slot| slot.bytes).sum(),
         slots,
+        chosen: None,
         warnings: facts.warnings.clone(),
     })
 }

@@ -214,11 +214,7 @@ fn check_finite(name: LayerName, layer: &Layer, width: u32) -> Result<(), Render
 }
 
 /// The frame's estimate of its own relative L1 error; `None` where no light landed.
-pub(super) fn estimated_error(
-    facts: &SceneFacts,
-    raw: &[u64],
-    differences: &[[f32; 4]],
-) -> Option<f64> {
+pub(super) fn estimated_error(facts: &SceneFacts, differences: &[[f32; 4]]) -> Option<f64> {
     let coarse = facts.coarse();
     let (mut difference_w, mut landed_w) = (0.0, 0.0);
     for (comparison, texel_m2) in estimate::compared(facts, &coarse) {
@@ -229,18 +225,11 @@ pub(super) fn estimated_error(
             landed_w += f64::from(sums[1]) * texel_m2;
         }
     }
-    let (mut torn_m2, mut landed_m2) = (0.0, 0.0);
-    for (index, terms) in raw.chunks_exact(ENERGY_TERMS as usize).enumerate() {
-        let per_count = 1.0 / light::energy_scale(facts, index);
-        torn_m2 += terms[term::TORN] as f64 * per_count;
-        landed_m2 += terms[term::LANDED] as f64 * per_count;
-    }
-    (landed_w > 0.0 && landed_m2 > 0.0).then(|| {
+    (landed_w > 0.0).then(|| {
         estimate_error(&FrameComparison {
             difference: difference_w / landed_w,
             cells_ratio: f64::from(facts.quality.water_cells)
                 / f64::from(coarse.quality.water_cells),
-            torn: torn_m2 / landed_m2,
         })
     })
 }

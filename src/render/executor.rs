@@ -101,7 +101,7 @@ impl Renderer {
             let differences =
                 self.compare(facts, &light, &estimate, buffers, cancel, &mut time_ms)?;
             Some(AccuracyStats {
-                estimated_error: collect::estimated_error(facts, &accounts, &differences),
+                estimated_error: collect::estimated_error(facts, &differences),
                 chosen: None,
             })
         };
@@ -115,6 +115,9 @@ impl Renderer {
             time_ms,
             peak_bytes: 0,
         };
+        if facts.only_estimate {
+            return Ok(result);
+        }
         if let Some(camera) = facts.camera {
             self.run_bands(
                 facts,

@@ -6,6 +6,7 @@ mod commands;
 mod executor;
 mod geometry;
 mod self_check;
+mod tune;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -27,6 +28,7 @@ use crate::stats::{
     AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
     TimeStats, Warning,
 };
+use crate::tuning::Calibration;
 
 pub use self_check::{SelfCheck, SelfCheckItem, twin_error};
 
@@ -89,6 +91,7 @@ pub struct Renderer {
     arena: Option<wgpu::Buffer>,
     geometry: Option<geometry::Geometry>,
     memory_budget_bytes: u64,
+    calibration: Calibration,
     /// Polls since the last frame.
     idle_polls: u32,
     wide_sum_reruns: u64,
@@ -125,6 +128,7 @@ impl Renderer {
             arena: None,
             geometry: None,
             memory_budget_bytes: config.memory_budget_mib << 20,
+            calibration: config.calibration.clone().unwrap_or_default(),
             idle_polls: 0,
             wide_sum_reruns: 0,
         })
@@ -149,9 +153,12 @@ impl Renderer {
     ///
     /// # Errors
     /// When the scene cannot be rendered.
-    pub fn plan(&self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
-        let facts = SceneFacts::of(resolved)?;
-        Ok(plan::plan_scene(&facts, self)?)
+    pub fn plan(&mut self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
+        let tuned = self.tuned(resolved, &CancellationToken::new())?;
+        let facts = SceneFacts::of(tuned.as_ref().map_or(resolved, |(scene, _)| scene))?;
+        let mut plan = plan::plan_scene(&facts, self)?;
+        plan.chosen = tuned.map(|(_, chosen)| chosen);
+        Ok(plan)
     }
 
     /// Renders; `cancel` is looked at between submissions.
@@ -165,35 +172,18 @@ impl Renderer {
     ) -> Result<Frame, RenderError> {
         let started = Instant::now();
         self.gpu.check()?;
+        let tuned = self.tuned(resolved, cancel)?;
+        let asked = resolved;
+        let resolved = tuned.as_ref().map_or(asked, |(scene, _)| scene);
         let facts = SceneFacts::of(resolved)?;
         let plan = plan::plan_scene(&facts, self)?;
-        self.check_budget(&plan)?;
-        let cache_before = self.level_maps.stats();
-        let missing = self
-            .level_maps
-            .reserve(&plan::level_maps(&facts))
-            .map_err(|e| RenderError::OverBudget {
-                what: "the scene's level maps (CAUSTICA_LEVEL_MAP_BUDGET_MIB)".to_owned(),
-                needed_bytes: e.needed_bytes,
-                budget_bytes: e.budget_bytes,
-            })?;
         let plan_ms = ms_since(started);
-        let kept = self.memory_budget_bytes.saturating_sub(plan.peak_bytes);
-        self.pool.begin_frame(kept);
-        self.idle_polls = 0;
-        self.timing.begin_frame();
-        let result = self.execute(resolved, &facts, &plan, &missing, cancel);
-        let run = match result {
-            Ok(run) => run,
-            Err(error) => {
-                self.level_maps.forget(&missing);
-                return Err(error);
-            }
-        };
+        let cache_before = self.level_maps.stats();
+        let run = self.run(resolved, &facts, &plan, cancel)?;
         let gpu_times = self.timing.collect(&self.gpu, run.time_ms.gpu)?;
         let mut stats = Stats {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            scene_hash: resolved.hash(),
+            scene_hash: asked.hash(),
             adapter: self.adapter(),
             passes: plan
                 .passes
@@ -225,6 +215,10 @@ impl Renderer {
             warnings: plan.warnings,
         };
         stats.warnings.extend(run.warnings);
+        if let Some((_, chosen)) = tuned {
+            stats.warnings.extend(tune::unmet(asked, &chosen));
+            stats.accuracy.get_or_insert_default().chosen = Some(chosen);
+        }
         stats.time_ms.total = ms_since(started);
         Ok(Frame {
             width: run.width,
@@ -232,6 +226,34 @@ impl Renderer {
             layers: run.layers,
             stats,
         })
+    }
+
+    /// Runs a plan, within the budgets of memory and level maps.
+    fn run(
+        &mut self,
+        resolved: &ResolvedScene,
+        facts: &SceneFacts,
+        plan: &Plan,
+        cancel: &CancellationToken,
+    ) -> Result<RunResult, RenderError> {
+        self.check_budget(plan)?;
+        let missing = self
+            .level_maps
+            .reserve(&plan::level_maps(facts))
+            .map_err(|e| RenderError::OverBudget {
+                what: "the scene's level maps (CAUSTICA_LEVEL_MAP_BUDGET_MIB)".to_owned(),
+                needed_bytes: e.needed_bytes,
+                budget_bytes: e.budget_bytes,
+            })?;
+        self.pool
+            .begin_frame(self.memory_budget_bytes.saturating_sub(plan.peak_bytes));
+        self.idle_polls = 0;
+        self.timing.begin_frame();
+        let result = self.execute(resolved, facts, plan, &missing, cancel);
+        if result.is_err() {
+            self.level_maps.forget(&missing);
+        }
+        result
     }
 
     /// Frees what is cached for a mesh.

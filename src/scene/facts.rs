@@ -111,6 +111,8 @@ pub struct SceneFacts {
     pub layers: Vec<LayerName>,
     /// The receiver of an irradiance map.
     pub map_receiver: Option<Receiver>,
+    /// Whether nothing but the light's own estimate of its error is wanted.
+    pub only_estimate: bool,
     /// Sky irradiance to be added to an irradiance map on the floor, W/m².
     pub map_sky_w_m2: [f64; 3],
     /// The dials.
@@ -162,6 +164,7 @@ impl SceneFacts {
             camera: None,
             layers: vec![LayerName::Irradiance],
             map_receiver: None,
+            only_estimate: false,
             map_sky_w_m2: [0.0; 3],
             quality: scene.quality.clone(),
             warnings: Vec::new(),

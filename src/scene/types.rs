@@ -381,6 +381,11 @@ impl<'de> Deserialize<'de> for Output {
 }
 
 impl Output {
+    /// Whether a camera takes a picture.
+    pub fn is_view(&self) -> bool {
+        matches!(self, Self::View(_))
+    }
+
     /// How the result is written to a file.
     pub fn encoding(&self) -> Encoding {
         match self {

@@ -155,7 +155,7 @@ impl RenderBackend for Fake {
         adapter()
     }
 
-    fn plan(&self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
+    fn plan(&mut self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
         self.control.note("plan");
         Ok(Plan {
             passes: vec![PlannedPass {

@@ -1,0 +1,157 @@
+//! Asking for accuracy or time instead of dials: looks at the scene with few cells, and chooses.
+
+use tokio_util::sync::CancellationToken;
+
+use super::{RenderError, Renderer};
+use crate::plan::{self, WarmCache};
+use crate::scene::ResolvedScene;
+use crate::scene::facts::SceneFacts;
+use crate::stats::{ChosenDials, Warning};
+use crate::tuning::{choose, cost, ladder};
+
+/// Cells of the look that tells what error a time budget will buy.
+const BUDGET_LOOK: u32 = 64;
+
+impl Renderer {
+    /// The scene with dials chosen for what `quality` asks, and what they are; `None` where it asks for nothing.
+    pub(super) fn tuned(
+        &mut self,
+        resolved: &ResolvedScene,
+        cancel: &CancellationToken,
+    ) -> Result<Option<(ResolvedScene, ChosenDials)>, RenderError> {
+        let quality = &resolved.scene.quality;
+        let chosen = if let Some(target) = quality.target_error {
+            self.for_error(resolved, target, cancel)?
+        } else if let Some(budget_ms) = quality.time_budget_ms {
+            self.for_time(resolved, budget_ms, cancel)?
+        } else {
+            return Ok(None);
+        };
+        let rung = with_cells(resolved, chosen.water_cells);
+        Ok(Some((rung, chosen)))
+    }
+
+    fn for_error(
+        &mut self,
+        resolved: &ResolvedScene,
+        target: f64,
+        cancel: &CancellationToken,
+    ) -> Result<ChosenDials, RenderError> {
+        let margin = self.calibration.error_margin;
+        let choice = choose::for_error(target, margin, |cells| self.look(resolved, cells, cancel))?;
+        let reason = if choice.meets {
+            format!(
+                "{} looks with few cells: the fewest that are predicted to stay under {target}",
+                choice.looks
+            )
+        } else {
+            format!(
+                "{} looks: no number of cells is predicted to stay under {target}; these come nearest",
+                choice.looks
+            )
+        };
+        self.dials(
+            resolved,
+            choice.cells,
+            choice.predicted_error,
+            choice.meets,
+            reason,
+        )
+    }
+
+    fn for_time(
+        &mut self,
+        resolved: &ResolvedScene,
+        budget_ms: f64,
+        cancel: &CancellationToken,
+    ) -> Result<ChosenDials, RenderError> {
+        let (cells, meets) =
+            choose::for_time(budget_ms, |cells| self.predicted_ms(resolved, cells))?;
+        let error = self.look(resolved, BUDGET_LOOK, cancel)?.unwrap_or(0.0);
+        let predicted = error
+            * self.calibration.error_margin
+            * (f64::from(BUDGET_LOOK) / f64::from(cells)).powi(2);
+        let reason = if meets {
+            format!("the most cells that are predicted to take at most {budget_ms} ms")
+        } else {
+            format!("even the fewest cells are predicted to take more than {budget_ms} ms")
+        };
+        self.dials(resolved, cells, predicted, meets, reason)
+    }
+
+    fn dials(
+        &self,
+        resolved: &ResolvedScene,
+        cells: u32,
+        predicted_error: f64,
+        meets: bool,
+        reason: String,
+    ) -> Result<ChosenDials, RenderError> {
+        let quality = ladder::rung(&resolved.scene.quality, cells);
+        Ok(ChosenDials {
+            water_cells: quality.water_cells,
+            map_texels: quality.map_texels,
+            level_map_texels: quality.level_map_texels,
+            split_levels: quality.split_levels,
+            predicted_error,
+            predicted_ms: self.predicted_ms(resolved, cells)?,
+            meets,
+            reason,
+        })
+    }
+
+    /// What a warm frame with so many cells will take, ms.
+    fn predicted_ms(&self, resolved: &ResolvedScene, cells: u32) -> Result<f64, RenderError> {
+        let facts = SceneFacts::of(&with_cells(resolved, cells))?;
+        let plan = plan::plan_scene(&facts, &WarmCache)?;
+        Ok(cost::predicted_ms(
+            &plan,
+            &facts,
+            self.calibration.frame_ms,
+            &self.calibration.passes,
+        ))
+    }
+
+    /// What the light with so many cells estimates its own error to be; no picture is made.
+    fn look(
+        &mut self,
+        resolved: &ResolvedScene,
+        cells: u32,
+        cancel: &CancellationToken,
+    ) -> Result<Option<f64>, RenderError> {
+        let mut rung = with_cells(resolved, cells);
+        rung.scene.quality.estimate_error = true;
+        let mut facts = SceneFacts::of(&rung)?;
+        facts.only_estimate = true;
+        let plan = plan::plan_scene(&facts, self)?;
+        let run = self.run(&rung, &facts, &plan, cancel)?;
+        Ok(run.accuracy.and_then(|accuracy| accuracy.estimated_error))
+    }
+}
+
+fn with_cells(resolved: &ResolvedScene, cells: u32) -> ResolvedScene {
+    let mut rung = resolved.clone();
+    rung.scene.quality = ladder::rung(&resolved.scene.quality, cells);
+    rung
+}
+
+/// What to say where a wish cannot be met.
+pub(super) fn unmet(resolved: &ResolvedScene, chosen: &ChosenDials) -> Option<Warning> {
+    if chosen.meets {
+        return None;
+    }
+    let (code, field) = if resolved.scene.quality.target_error.is_some() {
+        ("target_error_not_met", "target_error")
+    } else {
+        ("time_budget_not_met", "time_budget_ms")
+    };
+    let mut warning = Warning::new(
+        code,
+        format!(
+            "{}: {} water cells, a relative L1 error of {:.2e}, {:.0} ms",
+            chosen.reason, chosen.water_cells, chosen.predicted_error, chosen.predicted_ms
+        ),
+    );
+    warning.pointer = Some(format!("/quality/{field}"));
+    Some(warning)
+}

@@ -1,0 +1,120 @@
+//! The figures behind predictions: what passes cost on one machine, and how far a frame's estimate of its error may be off.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::cost::PassRate;
+
+/// Version of the file's form.
+const FORM: u32 = 1;
+/// What comes with the program.
+const BUILT_IN: &str = include_str!("calibration.json");
+
+/// Why a calibration cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum CalibrationError {
+    /// The file cannot be read.
+    #[error("cannot read the calibration {file}: {error}")]
+    Read {
+        /// The file.
+        file: String,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// The file is no calibration.
+    #[error(
+        "{file} is no calibration: {reason}; accepted: what `caustica calibrate` of this version writes"
+    )]
+    Form {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// What was measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Calibration {
+    /// Version of the form: 1.
+    pub form: u32,
+    /// Adapter that was measured, with its driver.
+    pub adapter: String,
+    /// What a frame costs besides its passes, ms.
+    pub frame_ms: f64,
+    /// Cost of each pass.
+    pub passes: BTreeMap<String, PassRate>,
+    /// How much larger than a frame's estimate its true error may be, 1 …: the largest seen against the float64 reference.
+    pub error_margin: f64,
+}
+
+impl Default for Calibration {
+    /// What comes with the program: software Vulkan on two cores.
+    fn default() -> Self {
+        Self::read(BUILT_IN, "the built-in calibration").expect("a test reads it")
+    }
+}
+
+impl Calibration {
+    /// Reads a file that `caustica calibrate` wrote.
+    ///
+    /// # Errors
+    /// [`CalibrationError`].
+    pub fn load(path: &Path) -> Result<Self, CalibrationError> {
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| CalibrationError::Read {
+            file: file.clone(),
+            error,
+        })?;
+        Self::read(&text, &file)
+    }
+
+    /// Reads a calibration's text; `file` is what errors call it.
+    ///
+    /// # Errors
+    /// [`CalibrationError::Form`] for anything but finite figures in their ranges.
+    pub fn read(text: &str, file: &str) -> Result<Self, CalibrationError> {
+        let wrong = |reason: String| CalibrationError::Form {
+            file: file.to_owned(),
+            reason,
+        };
+        let read: Self = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        if read.form != FORM {
+            return Err(wrong(format!("its form is {}, not {FORM}", read.form)));
+        }
+        if !(1.0..=10.0).contains(&read.error_margin) {
+            return Err(wrong(format!(
+                "error_margin is {}, not 1 … 10",
+                read.error_margin
+            )));
+        }
+        let mut figures = read
+            .passes
+            .values()
+            .flat_map(|rate| [rate.start_ms, rate.unit_ns])
+            .chain([read.frame_ms]);
+        if let Some(figure) = figures.find(|figure| !(0.0..=1e9).contains(figure)) {
+            return Err(wrong(format!("{figure} is no time")));
+        }
+        Ok(read)
+    }
+
+    /// A calibration of measured figures.
+    pub fn new(
+        adapter: String,
+        frame_ms: f64,
+        passes: BTreeMap<String, PassRate>,
+        error_margin: f64,
+    ) -> Self {
+        Self {
+            form: FORM,
+            adapter,
+            frame_ms,
+            passes,
+            error_margin,
+        }
+    }
+}

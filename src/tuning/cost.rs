@@ -1,0 +1,117 @@
+//! What a plan will take: each pass costs something to start and something per unit of its work.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::passes::slot;
+use crate::plan::Plan;
+use crate::scene::facts::SceneFacts;
+
+/// Cost of a pass on one machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PassRate {
+    /// Each run, whatever it does, ms.
+    pub start_ms: f64,
+    /// Each unit of [`work`], ns.
+    pub unit_ns: f64,
+}
+
+/// Units of work of one run of a pass: rays through waves, texels, pixels — whatever its time grows with. 0 for a pass that is not
+/// known.
+pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
+    let cells = f64::from(facts.quality.water_cells).powi(2);
+    let waves = facts.surface.components.len() as f64;
+    let wet = facts.wet_objects().count() as f64;
+    let texels = f64::from(slot::flux_texels(facts));
+    let level_texels = f64::from(slot::object_texels(facts));
+    let pixels = facts.camera.map_or(0.0, |camera| {
+        f64::from(camera.width)
+            * f64::from(
+                camera
+                    .height
+                    .min(slot::band_rows(camera.width, camera.height)),
+            )
+    });
+    match pass {
+        "level_map" | "level_map_pyramid" => level_texels,
+        "surface" => cells * (1.0 + waves),
+        "beams" => cells,
+        // A ray looks at every receiver.
+        "hits" => cells * (1.0 + wet),
+        // Beams cover the maps about twice over, however many there are.
+        "deposit" => cells + texels,
+        "split" => {
+            f64::from(facts.quality.water_cells)
+                * f64::from(1_u32 << facts.quality.split_levels)
+                * wet.sqrt()
+                * (1.0 + waves)
+        }
+        "landed" | "irradiance" => texels,
+        // A quarter of all the light's passes.
+        "coarse_irradiance" => 0.25 * (cells * (3.0 + waves + wet) + texels),
+        "estimate" => texels,
+        "camera_hits" => pixels * (1.0 + waves),
+        "camera_irradiance" | "shade" => pixels,
+        _ => 0.0,
+    }
+}
+
+/// What a plan will take with warm pipelines, ms. Passes without a rate count nothing.
+pub fn predicted_ms(
+    plan: &Plan,
+    facts: &SceneFacts,
+    frame_ms: f64,
+    rates: &BTreeMap<String, PassRate>,
+) -> f64 {
+    let samples = f64::from(facts.quality.pixel_samples).powi(2);
+    let passes: f64 = plan
+        .passes
+        .iter()
+        .filter_map(|pass| {
+            let rate = rates.get(&pass.name)?;
+            let looks = if pass.name.starts_with("camera") || pass.name == "shade" {
+                samples
+            } else {
+                1.0
+            };
+            let once = rate.start_ms + rate.unit_ns * 1e-6 * work(&pass.name, facts);
+            Some(f64::from(pass.runs) * looks * once)
+        })
+        .sum();
+    frame_ms + passes
+}
+
+/// The rate that comes nearest to some measured (work, ms of one run) in relative terms; both parts 0 or more.
+pub fn fit_rate(measured: &[(f64, f64)]) -> PassRate {
+    // Least squares of (start + unit·work)/ms − 1: every measurement counts alike, small or large.
+    let (mut a, mut b, mut c, mut d, mut e) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for &(work, ms) in measured.iter().filter(|(_, ms)| *ms > 0.0) {
+        let (x, y) = (1.0 / ms, work / ms);
+        a += x * x;
+        b += x * y;
+        c += y * y;
+        d += x;
+        e += y;
+    }
+    let determinant = a * c - b * b;
+    let (start, unit) = if determinant > 1e-12 * a * c {
+        ((d * c - e * b) / determinant, (a * e - b * d) / determinant)
+    } else if c > 0.0 {
+        (0.0, e / c)
+    } else {
+        (0.0, 0.0)
+    };
+    let (start, unit) = if start < 0.0 && c > 0.0 {
+        (0.0, e / c)
+    } else if unit < 0.0 && a > 0.0 {
+        (d / a, 0.0)
+    } else {
+        (start, unit)
+    };
+    PassRate {
+        start_ms: start,
+        unit_ns: unit * 1e6,
+    }
+}
