@@ -49,6 +49,9 @@ pub struct RenderConfig {
     /// Calibration that `caustica calibrate` wrote on this machine; without it predictions are for software Vulkan on two cores.
     #[arg(long, env = "CAUSTICA_CALIBRATION", value_name = "FILE", value_parser = calibration, global = true)]
     pub calibration: Option<Calibration>,
+    /// Folder to keep float64 truths in, for studies of accuracy; without it `accuracy` uses the user's caches and a service none.
+    #[arg(long, env = "CAUSTICA_TRUTH_CACHE", value_name = "FOLDER", global = true)]
+    pub truth_cache: Option<std::path::PathBuf>,
 }
 
 /// Reads `--calibration`.
@@ -64,6 +67,7 @@ impl Default for RenderConfig {
             level_map_budget_mib: 64,
             shader_dump: None,
             calibration: None,
+            truth_cache: None,
         }
     }
 }

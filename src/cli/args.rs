@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use super::error::CliError;
-use super::{animate, health, plan, render, selfcheck, serve};
+use super::{accuracy, animate, calibrate, health, plan, render, selfcheck, serve};
 use crate::config::{Limits, RenderConfig, ServeConfig};
 
 /// Renders water caustics, from the command line or as an HTTP service.
@@ -33,6 +33,10 @@ pub enum Command {
     Render(render::RenderArgs),
     /// Renders frames of a scene file, each at its own moment.
     Animate(animate::AnimateArgs),
+    /// Draws error against time: renders a scene with each setting of its dials, compared with the float64 truth.
+    Accuracy(accuracy::AccuracyArgs),
+    /// Measures what predictions of time and error rest on, on this machine.
+    Calibrate(calibrate::CalibrateArgs),
     /// Says which passes a scene needs, why, and how much memory they hold; renders nothing.
     Plan(plan::PlanArgs),
     /// Serves HTTP.
@@ -68,6 +72,8 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
     match command {
         Command::Render(args) => render::run(&args, &render, &limits),
         Command::Animate(args) => animate::run(&args, &render, &limits),
+        Command::Accuracy(args) => accuracy::run(&args, &render, &limits),
+        Command::Calibrate(args) => calibrate::run(&args, &render),
         Command::Plan(args) => plan::run(&args, &render, &limits),
         Command::Serve(args) => serve::run(render, limits, args),
         Command::Selfcheck(args) => selfcheck::run(&args, &render),

@@ -53,6 +53,9 @@ pub enum CliError {
     /// The frame cannot be made into a file.
     #[error(transparent)]
     Encode(#[from] EncodeError),
+    /// A study or a calibration cannot be made.
+    #[error("{0}")]
+    Study(String),
     /// The GPU of this machine does not calculate as it should.
     #[error("the self-check failed: {failed} of {all} checks are outside their tolerance")]
     SelfCheck {
@@ -94,7 +97,7 @@ impl CliError {
     /// [`EXIT_RETRY`] where the same command may succeed later or elsewhere, [`EXIT_REFUSED`] where it cannot.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::Scene { .. } | Self::Encode(_) => EXIT_REFUSED,
+            Self::Usage(_) | Self::Scene { .. } | Self::Encode(_) | Self::Study(_) => EXIT_REFUSED,
             Self::Read { error, .. } => match error.kind() {
                 io::ErrorKind::NotFound | io::ErrorKind::IsADirectory => EXIT_REFUSED,
                 _ => EXIT_RETRY,

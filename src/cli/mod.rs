@@ -1,12 +1,14 @@
-//! The command line: `args` says what may be typed, one file per command does it (`render`, `animate`, `plan`, `serve`,
-//! `selfcheck`, `health`), `error` knows the exit codes.
+//! The command line: `args` says what may be typed, one file per command does it (`render`, `animate`, `accuracy`, `calibrate`,
+//! `plan`, `serve`, `selfcheck`, `health`), `error` knows the exit codes.
 //!
 //! Around them: `scene_flags` makes a flag of every field of `quality` and `output`, `scene_file` reads a scene with its
 //! meshes, `frames` reads frame ranges and file name patterns, `picture` renders and encodes, `files` writes whole files or
 //! none, `summary` says in a terminal what a frame cost.
 
+pub mod accuracy;
 pub mod animate;
 pub mod args;
+pub mod calibrate;
 pub mod error;
 pub mod files;
 pub mod frames;

@@ -20,6 +20,17 @@ pub enum Representation {
 /// [`ApiError::NotAcceptable`] when both are excluded.
 pub fn choose(headers: &HeaderMap, format: ImageFormat) -> Result<Representation, ApiError> {
     let image_type = media_type(format);
+    Ok(match best(headers, &[image_type, "application/json"])? {
+        "application/json" => Representation::Json,
+        _ => Representation::Image,
+    })
+}
+
+/// Picks the media type that the `Accept` header prefers; the first on a draw, or without the header.
+///
+/// # Errors
+/// [`ApiError::NotAcceptable`] when all are excluded.
+pub fn best<'a>(headers: &HeaderMap, offered: &[&'a str]) -> Result<&'a str, ApiError> {
     let ranges: Vec<&str> = headers
         .get_all(header::ACCEPT)
         .iter()
@@ -28,21 +39,21 @@ pub fn choose(headers: &HeaderMap, format: ImageFormat) -> Result<Representation
         .map(str::trim)
         .filter(|range| !range.is_empty())
         .collect();
-    if ranges.is_empty() {
-        return Ok(Representation::Image);
+    let mut best: Option<(&'a str, f32)> = None;
+    for media_type in offered {
+        let weight = if ranges.is_empty() {
+            1.0
+        } else {
+            quality(&ranges, media_type)
+        };
+        if weight > best.map_or(0.0, |(_, weight)| weight) {
+            best = Some((media_type, weight));
+        }
     }
-    let image = quality(&ranges, image_type);
-    let json = quality(&ranges, "application/json");
-    if image <= 0.0 && json <= 0.0 {
-        return Err(ApiError::NotAcceptable {
-            offered: format!("{image_type}, application/json"),
-        });
-    }
-    Ok(if json > image {
-        Representation::Json
-    } else {
-        Representation::Image
-    })
+    best.map(|(media_type, _)| media_type)
+        .ok_or_else(|| ApiError::NotAcceptable {
+            offered: offered.join(", "),
+        })
 }
 
 /// Media type of an image file.

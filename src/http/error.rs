@@ -96,6 +96,8 @@ problem_kinds! {
     MissingMesh = UNPROCESSABLE_ENTITY, "missing-mesh", "The scene names a mesh that is not stored", Request;
     /// 422: the mesh cannot be used.
     InvalidMesh = UNPROCESSABLE_ENTITY, "invalid-mesh", "The mesh is not valid", Request;
+    /// 422: there is no float64 truth of what the scene asks for, or nothing in it to be relative to.
+    NoTruth = UNPROCESSABLE_ENTITY, "no-truth", "There is no truth to compare with", Request;
     /// 422: the plan needs more GPU memory than is allowed.
     OverBudget = UNPROCESSABLE_ENTITY, "over-budget", "The scene needs too much GPU memory", Request;
     /// 429: the queue is full; `Retry-After` says when to try again.
@@ -183,6 +185,12 @@ pub enum ApiError {
     /// The GPU queue has no answer.
     #[error(transparent)]
     Job(#[from] JobError),
+    /// A study of accuracy is running; there is room for one.
+    #[error("another study of accuracy is running; one at a time")]
+    StudyRunning,
+    /// A scene cannot be compared with the truth.
+    #[error("no truth: {0}")]
+    NoTruth(String),
     /// The service does not take work now.
     #[error("not ready: {}", reasons.join("; "))]
     NotReady {
@@ -212,6 +220,8 @@ impl ApiError {
             Self::Mesh(MeshError::StoreFull { .. }) => ProblemKind::MeshStoreFull,
             Self::Mesh(_) => ProblemKind::InvalidMesh,
             Self::Job(error) => job_kind(error),
+            Self::StudyRunning => ProblemKind::QueueFull,
+            Self::NoTruth(_) => ProblemKind::NoTruth,
             Self::NotReady { .. } => ProblemKind::NotReady,
             Self::Encode(_) | Self::Panic(_) => ProblemKind::Internal,
         }

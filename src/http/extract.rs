@@ -19,13 +19,7 @@ impl FromRequest<AppState> for SceneBody {
     type Rejection = ApiError;
 
     async fn from_request(request: Request, state: &AppState) -> Result<Self, ApiError> {
-        let media_type = media_type(request.headers());
-        if !media_type
-            .as_deref()
-            .is_some_and(|found| found == SCENE_TYPES || found.ends_with("+json"))
-        {
-            return Err(unsupported(media_type, SCENE_TYPES));
-        }
+        json_type(request.headers())?;
         let body = bytes(request, state).await?;
         let state = state.clone();
         // A scene may hold as many bytes as the body limit lets through: reading it is work for another thread.
@@ -36,6 +30,31 @@ impl FromRequest<AppState> for SceneBody {
         })
         .await
     }
+}
+
+/// A body that says it is JSON, unread.
+#[derive(Clone, Debug)]
+pub struct JsonBody(pub Bytes);
+
+impl FromRequest<AppState> for JsonBody {
+    type Rejection = ApiError;
+
+    async fn from_request(request: Request, state: &AppState) -> Result<Self, ApiError> {
+        json_type(request.headers())?;
+        Ok(Self(bytes(request, state).await?))
+    }
+}
+
+/// Refuses bodies that do not say they are JSON.
+fn json_type(headers: &HeaderMap) -> Result<(), ApiError> {
+    let media_type = media_type(headers);
+    if media_type
+        .as_deref()
+        .is_some_and(|found| found == SCENE_TYPES || found.ends_with("+json"))
+    {
+        return Ok(());
+    }
+    Err(unsupported(media_type, SCENE_TYPES))
 }
 
 /// The whole body, up to `limits.max_body_bytes`.

@@ -139,6 +139,12 @@ problem_sets! {
         MalformedJson, MalformedBody, NotAcceptable, BodyTooLarge, UnsupportedMediaType, InvalidScene, LimitExceeded,
         MissingMesh, OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory, ShuttingDown,
     ];
+    /// Of the study of accuracy.
+    AccuracyProblems = [
+        MalformedJson, MalformedBody, NotAcceptable, BodyTooLarge, UnsupportedMediaType, InvalidScene, LimitExceeded,
+        MissingMesh, NoTruth, OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory,
+        ShuttingDown,
+    ];
     /// Of the readiness probe.
     ReadyProblems = [Internal, DeadlinePassed, NotReady];
 }

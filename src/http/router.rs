@@ -15,7 +15,7 @@ use utoipa_axum::routes;
 use super::error::ApiError;
 use super::observe::observe;
 use super::openapi::document;
-use super::routes::{docs, health, info, meshes, metrics, plan, render};
+use super::routes::{accuracy, docs, health, info, meshes, metrics, plan, render};
 use super::state::AppState;
 
 /// The documented routes: the one list from which both the router and the contract are made.
@@ -31,6 +31,7 @@ pub(super) fn api() -> OpenApiRouter<AppState> {
         .routes(routes!(meshes::inspect, meshes::forget))
         .routes(routes!(plan::plan))
         .routes(routes!(render::render))
+        .routes(routes!(accuracy::accuracy))
 }
 
 /// The whole service.

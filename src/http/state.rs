@@ -1,7 +1,10 @@
 //! What the routes share.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use tokio::sync::Semaphore;
 
 use super::error::ApiError;
 use super::metrics::Metrics;
@@ -22,6 +25,7 @@ struct Inner {
     limits: Limits,
     render: RenderConfig,
     metrics: Metrics,
+    studies: Arc<Semaphore>,
     draining: AtomicBool,
 }
 
@@ -35,6 +39,7 @@ impl AppState {
                 limits,
                 render,
                 metrics: Metrics::new(),
+                studies: Arc::new(Semaphore::new(1)),
                 draining: AtomicBool::new(false),
             }),
         }
@@ -63,6 +68,16 @@ impl AppState {
     /// Counters and gauges.
     pub fn metrics(&self) -> Metrics {
         self.inner.metrics
+    }
+
+    /// The right to make a study of accuracy: one at a time, since they take a core or all.
+    pub fn studies(&self) -> &Arc<Semaphore> {
+        &self.inner.studies
+    }
+
+    /// Folder that truths are kept in, if any.
+    pub fn truth_cache(&self) -> Option<&PathBuf> {
+        self.inner.render.truth_cache.as_ref()
     }
 
     /// Turns `/readyz` red for good, so that nobody sends more work; requests are still served.

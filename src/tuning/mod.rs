@@ -3,7 +3,7 @@
 //! - `ladder`: the dials as one family, each rung in balance;
 //! - `choose`: which rung a wanted error needs, from looks at the scene with few cells;
 //! - `cost`: what a plan will take, pass by pass;
-//! - `calibration`: the figures behind both for one machine, which `caustica calibrate` measures anew.
+//! - `calibration`: the figures behind both for one machine, which `caustica calibrate` measures anew (`measure`).
 //!
 //! Nothing here touches a GPU: looking at a scene and measuring are handed in.
 
@@ -11,5 +11,6 @@ pub mod calibration;
 pub mod choose;
 pub mod cost;
 pub mod ladder;
+pub mod measure;
 
 pub use calibration::Calibration;

@@ -1,5 +1,6 @@
 //! The routes, one resource per file.
 
+pub mod accuracy;
 pub mod docs;
 pub mod health;
 pub mod info;

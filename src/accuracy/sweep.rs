@@ -1,0 +1,339 @@
+//! Sweeps: each setting of the dials is rendered, compared with the truth, and timed.
+
+use super::dial::{Dial, as_json, with_dials};
+use super::figures::error_figures;
+use super::metrics::MetricError;
+use super::order::fit_orders;
+use super::pareto::mark_pareto_front;
+use super::study::{
+    CostFigures, LinearImage, PassCost, Point, SpreadMs, Study, StudyImages, Sweep, TruthFigures,
+};
+use crate::config::Limits;
+use crate::frame::Frame;
+use crate::reference::{Truth, TruthKind};
+use crate::scene::facts::SceneFacts;
+use crate::scene::{LayerName, Output, ResolvedScene, SceneError};
+use crate::stats::{Stats, Warning};
+
+/// Most settings of a study.
+pub const MOST_SETTINGS: usize = 64;
+/// Texels around a shadow's edge whose error is told apart.
+pub const SHADOW_EDGE_TEXELS: u32 = 2;
+
+/// What to sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepSettings {
+    /// The dials.
+    pub dials: Vec<Dial>,
+    /// All combinations of the dials' values, instead of one dial at a time with the others as the scene has them.
+    pub grid: bool,
+    /// Timed runs of each setting, after one that warms up, 1 …
+    pub runs: u32,
+}
+
+/// Why there is no study.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError<E: std::error::Error> {
+    /// A dial's value is not accepted, or nothing of the scene can be compared.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// More than [`MOST_SETTINGS`].
+    #[error("the dials have {0} settings; at most {MOST_SETTINGS} are accepted")]
+    TooMany(usize),
+    /// Images cannot be compared.
+    #[error(transparent)]
+    Metric(#[from] MetricError),
+    /// A render failed for good.
+    #[error("{0}")]
+    Render(E),
+    /// Nobody waits any more.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// What a render that failed means for the study.
+#[derive(Debug)]
+pub enum Refusal<E> {
+    /// This setting cannot be rendered (too much memory): it is left out, and the study says so.
+    Setting(E),
+    /// Nothing can be.
+    All(E),
+}
+
+/// A renderer, wherever it is.
+pub type Render<'a, E> = dyn FnMut(ResolvedScene) -> Result<Frame, Refusal<E>> + 'a;
+
+/// Hears of progress: settings done, settings in all, what is being done. Returns whether to go on.
+pub type Progress<'a> = dyn FnMut(usize, usize, &str) -> bool + 'a;
+
+/// Renders, compares and times every setting.
+///
+/// The first run of a setting warms up, gives the image and the frame's own estimate of its error; the timed ones do without the
+/// estimate.
+///
+/// # Errors
+/// [`StudyError`].
+pub fn run_study<E: std::error::Error>(
+    resolved: &ResolvedScene,
+    name: &str,
+    truth: &Truth,
+    settings: &SweepSettings,
+    limits: &Limits,
+    render: &mut Render<'_, E>,
+    progress: &mut Progress<'_>,
+) -> Result<(Study, StudyImages), StudyError<E>> {
+    let plan = settings_of(settings);
+    let total: usize = plan.iter().map(|(_, settings)| settings.len()).sum();
+    if total > MOST_SETTINGS {
+        return Err(StudyError::TooMany(total));
+    }
+    // Every setting is checked before any time is spent.
+    let base = with_irradiance(resolved);
+    let mut scenes = Vec::new();
+    for (_, settings) in &plan {
+        for dials in settings {
+            scenes.push(with_dials(&base, dials, limits)?);
+        }
+    }
+    let edge = truth.shadow_edge(SHADOW_EDGE_TEXELS);
+    let mut study = Study {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        scene: name.to_owned(),
+        scene_hash: resolved.hash(),
+        cores: std::thread::available_parallelism().map_or(1, |n| n.get() as u32),
+        truth: truth_figures(truth, edge.as_deref()),
+        ..Study::default()
+    };
+    let mut images = StudyImages {
+        truth: LinearImage {
+            width: truth.width,
+            height: truth.height,
+            rgb: truth.irradiance.clone(),
+        },
+        points: Vec::new(),
+        white_w_m2: std::f64::consts::PI * SceneFacts::of(resolved)?.white_radiance,
+    };
+    let mut scenes = scenes.into_iter();
+    let mut done = 0;
+    for (dial, settings_here) in &plan {
+        let mut sweep = Sweep {
+            dial: dial.clone(),
+            ..Sweep::default()
+        };
+        let mut sweep_images = Vec::new();
+        for (dials, scene) in settings_here.iter().zip(scenes.by_ref()) {
+            let words = in_words(dials);
+            if !progress(done, total, &words) {
+                return Err(StudyError::Cancelled);
+            }
+            done += 1;
+            match measure(&scene, settings.runs, render) {
+                Ok((frame, costs)) => {
+                    let image = compared_image(&frame, truth);
+                    let mut error = error_figures(
+                        &image,
+                        &images.truth,
+                        &truth.compared,
+                        edge.as_deref(),
+                        images.white_w_m2,
+                    )?;
+                    error.estimated = frame.stats.accuracy.and_then(|a| a.estimated_error);
+                    study.adapter = frame.stats.adapter;
+                    sweep.points.push(Point {
+                        dials: dials
+                            .iter()
+                            .map(|(name, text)| (name.clone(), as_json(text)))
+                            .collect(),
+                        error,
+                        cost: cost_figures(&costs),
+                        on_pareto_front: false,
+                        warnings: frame.stats.warnings,
+                    });
+                    sweep_images.push(image);
+                }
+                Err(Refusal::Setting(error)) => study.warnings.push(Warning::new(
+                    "setting_left_out",
+                    format!("{words} cannot be rendered: {error}"),
+                )),
+                Err(Refusal::All(error)) => return Err(StudyError::Render(error)),
+            }
+        }
+        study.sweeps.push(sweep);
+        images.points.push(sweep_images);
+    }
+    progress(total, total, "done");
+    fit_orders(&mut study);
+    mark_pareto_front(&mut study);
+    Ok((study, images))
+}
+
+/// One setting: dials with their values.
+type Setting = Vec<(String, String)>;
+
+/// The sweeps: what varies, and the settings.
+fn settings_of(settings: &SweepSettings) -> Vec<(String, Vec<Setting>)> {
+    if !settings.grid {
+        return settings
+            .dials
+            .iter()
+            .map(|dial| {
+                let each = dial
+                    .values
+                    .iter()
+                    .map(|value| vec![(dial.name.clone(), value.clone())]);
+                (dial.name.clone(), each.collect())
+            })
+            .collect();
+    }
+    let mut all: Vec<Setting> = vec![Vec::new()];
+    for dial in &settings.dials {
+        all = all
+            .iter()
+            .flat_map(|setting| {
+                dial.values.iter().map(|value| {
+                    let mut longer = setting.clone();
+                    longer.push((dial.name.clone(), value.clone()));
+                    longer
+                })
+            })
+            .take(MOST_SETTINGS + 1)
+            .collect();
+    }
+    let names: Vec<&str> = settings.dials.iter().map(|d| d.name.as_str()).collect();
+    vec![(names.join(" × "), all)]
+}
+
+fn in_words(dials: &[(String, String)]) -> String {
+    let each: Vec<String> = dials
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    each.join(", ")
+}
+
+/// The scene with the layer that is compared; a map holds nothing else anyway.
+fn with_irradiance(resolved: &ResolvedScene) -> ResolvedScene {
+    let mut resolved = resolved.clone();
+    if let Output::View(view) = &mut resolved.scene.output
+        && !view.layers.contains(&LayerName::Irradiance)
+    {
+        view.layers.push(LayerName::Irradiance);
+        view.format = crate::scene::ImageFormat::Exr;
+    }
+    resolved
+}
+
+/// Renders once for the image and then for the clock.
+fn measure<E>(
+    scene: &ResolvedScene,
+    runs: u32,
+    render: &mut Render<'_, E>,
+) -> Result<(Frame, Vec<Stats>), Refusal<E>> {
+    let mut estimating = scene.clone();
+    estimating.scene.quality.estimate_error = true;
+    let frame = render(estimating)?;
+    let mut costs = Vec::new();
+    // Once more unmeasured where the first run built pipelines of its own for the estimate.
+    let mut plain = scene.clone();
+    plain.scene.quality.estimate_error = false;
+    for _ in 0..runs.max(1) {
+        costs.push(render(plain.clone())?.stats);
+    }
+    Ok((frame, costs))
+}
+
+/// The values of a frame that stand beside the truth's.
+fn compared_image(frame: &Frame, truth: &Truth) -> LinearImage {
+    let layer = &frame.layers[&LayerName::Irradiance];
+    let mut rgb = Vec::with_capacity(truth.irradiance.len());
+    for j in 0..truth.height {
+        for i in 0..truth.width {
+            let x = truth.first_pixel[0] + i * truth.pixel_step;
+            let y = truth.first_pixel[1] + j * truth.pixel_step;
+            let at = layer.channels * (y as usize * frame.width as usize + x as usize);
+            let compared = truth.compared[rgb.len()];
+            rgb.push(std::array::from_fn(|c| {
+                if compared {
+                    f64::from(layer.data[at + c])
+                } else {
+                    0.0
+                }
+            }));
+        }
+    }
+    LinearImage {
+        width: truth.width,
+        height: truth.height,
+        rgb,
+    }
+}
+
+fn truth_figures(truth: &Truth, edge: Option<&[bool]>) -> TruthFigures {
+    let compared = truth.compared.iter().filter(|&&c| c).count();
+    let what = match truth.kind {
+        TruthKind::FloorMap => format!(
+            "irradiance on the floor, {} × {} texels",
+            truth.width, truth.height
+        ),
+        TruthKind::ObjectMap => format!(
+            "irradiance on a mesh, {compared} of {} × {} texels",
+            truth.width, truth.height
+        ),
+        TruthKind::View => format!(
+            "irradiance on what the camera sees, at {compared} of its pixels (every {}th along each side)",
+            truth.pixel_step
+        ),
+    };
+    TruthFigures {
+        what,
+        width: truth.width,
+        height: truth.height,
+        rays: truth.rays,
+        relative_error: truth.relative_error,
+        seconds: truth.seconds,
+        from_disk: truth.from_disk,
+        shadow_edge_area: edge.filter(|_| compared > 0).map(|edge| {
+            let inside = edge.iter().zip(&truth.compared).filter(|(e, c)| **e && **c);
+            inside.count() as f64 / compared as f64
+        }),
+    }
+}
+
+fn cost_figures(runs: &[Stats]) -> CostFigures {
+    let spread_of = |figure: &dyn Fn(&Stats) -> Option<f64>| {
+        SpreadMs::of(runs.iter().filter_map(figure).collect())
+    };
+    let passes = runs.first().map(|stats| &stats.passes);
+    let passes = passes.into_iter().flatten().filter_map(|pass| {
+        let ms = spread_of(&|stats: &Stats| {
+            stats.passes.iter().find(|p| p.name == pass.name)?.gpu_ms
+        });
+        ms.map(|ms| PassCost {
+            name: pass.name.clone(),
+            ms,
+        })
+    });
+    CostFigures {
+        runs: runs.len() as u32,
+        wall_ms: spread_of(&|stats| Some(stats.time_ms.total)).unwrap_or_default(),
+        gpu_ms: spread_of(&|stats| Some(stats.time_ms.gpu + stats.time_ms.readback))
+            .unwrap_or_default(),
+        passes: passes.collect(),
+        peak_bytes: runs.iter().map(|s| s.memory.peak_bytes).max().unwrap_or(0),
+    }
+}
+
+impl SpreadMs {
+    /// Median, smallest and largest; `None` of nothing.
+    pub fn of(mut runs: Vec<f64>) -> Option<Self> {
+        runs.sort_by(f64::total_cmp);
+        let (min, max) = (*runs.first()?, *runs.last()?);
+        let middle = runs.len() / 2;
+        let median = if runs.len().is_multiple_of(2) {
+            0.5 * (runs[middle - 1] + runs[middle])
+        } else {
+            runs[middle]
+        };
+        Some(Self { median, min, max })
+    }
+}
