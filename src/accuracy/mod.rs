@@ -1,7 +1,22 @@
-//! How far an image is from the truth, and what it cost to get that near: the figures of an image (`metrics`), and what a
-//! study of a scene found (`study`).
+//! How far an image is from the truth, and what it cost to get that near.
+//!
+//! `study` holds what a study of a scene found. Its figures: `metrics` (numbers against numbers), `flip` and `luv` (pictures
+//! against pictures, made by `display`), `figures` (all of them for one image), `order` (how fast the error falls with a dial),
+//! `pareto` (which settings nothing beats). For people: `plot` (curves), `error_images` (contact sheets) and `report` (JSON,
+//! CSV, Markdown and the folder with everything); `words` writes numbers.
 
+pub mod display;
+pub mod figures;
+pub mod flip;
+pub mod luv;
 pub mod metrics;
+pub mod order;
+pub mod pareto;
+pub mod plot;
 pub mod study;
+pub mod words;
 
+pub use figures::error_figures;
 pub use metrics::{MetricError, convergence_order};
+pub use order::fit_orders;
+pub use pareto::mark_pareto_front;
