@@ -28,12 +28,45 @@ pub enum MetricError {
         value: f64,
     },
     /// Nothing to be relative to.
-    #[error("the truth is zero everywhere, so a relative error has no meaning")]
+    #[error(
+        "the truth is zero everywhere, so a relative error has no meaning; some light must reach what is compared"
+    )]
     BlackTruth,
     /// A percentile that is none.
     #[error("the percentile is {0}; it must be in 0 … 100")]
     Percentile(f64),
+    /// The pixels do not fill the picture.
+    #[error("the {which} holds {pixels} pixels; {width} × {height} are needed, at least one")]
+    Shape {
+        /// `image`, `truth` or a mask.
+        which: &'static str,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// What it holds.
+        pixels: usize,
+    },
+    /// More than the ꟻLIP library can address.
+    #[error(
+        "{width} × {height} pixels are too many for the ꟻLIP metric; it takes {MAX_PIXELS} at most"
+    )]
+    TooLarge {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// The mask leaves nothing.
+    #[error("no pixel is compared; the mask must hold at least one")]
+    NothingCompared,
+    /// No white to show irradiance by.
+    #[error("the irradiance of white is {0} W/m²; it must be finite and above 0")]
+    White(f64),
 }
+
+/// Pixels that a picture for ꟻLIP may have: a square of 8192.
+pub const MAX_PIXELS: u64 = 8192 * 8192;
 
 /// Σ|image − truth| / Σ|truth|.
 pub fn relative_l1<A, B>(image: &[A], truth: &[B]) -> Result<f64, MetricError>

@@ -10,6 +10,11 @@ use glam::DVec2;
 
 use super::window::LightWindow;
 
+/// Points of the second half's lattice per point of the first's, at most. Two shifts of one lattice could be alike by chance
+/// where the water varies along one direction only, and the error would look smaller than it is; lattices of different sizes,
+/// turned opposite ways, cannot.
+pub(super) const SECOND_HALF: f64 = 0.96;
+
 /// A lattice with `p² + q²` points per cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Lattice {

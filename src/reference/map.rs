@@ -5,28 +5,23 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{DVec2, DVec3};
 
 use super::floor::FloorMap;
-use super::lattice::{Lattice, uniform};
+use super::lattice::{Lattice, SECOND_HALF, uniform};
 use super::occluders::Occluders;
 use super::tally::Tally;
 use super::trace::Beam;
 use super::window::{LightWindow, Target, window_of};
 use super::{ReferenceError, ReferenceSettings};
 use crate::physics::refraction::direction_to_light;
-use crate::scene::{Light, Output, ResolvedScene, Scene, Sun};
+use crate::scene::{Light, Output, ResolvedScene, Scene, Sun, Water};
 use crate::waves::WaterSurface;
 
 /// How the error falls with the number of rays N, as N to this power; measured 0.72 … 0.75 on waves that fold.
-const ORDER: f64 = 0.73;
+pub(super) const ORDER: f64 = 0.73;
 /// Most that a round is larger than the one before.
-const MOST_GROWTH: f64 = 16.0;
+pub(super) const MOST_GROWTH: f64 = 16.0;
 
 /// Part of the rays in the first half.
 const FIRST_HALF: f64 = 0.515;
-/// Points of the second half's lattice per point of the first's, at most. Two shifts of one lattice could be alike by chance
-/// where the water varies along one direction only, and the error would look smaller than it is; lattices of different sizes,
-/// turned opposite ways, cannot.
-const SECOND_TO_FIRST: f64 = 0.96;
-
 /// Where the light went, W per channel, all suns together. Each term is summed where it happens, none by subtraction.
 ///
 /// emitted = reflected + absorbed + scattered + landed (floor and objects) + left_region + missed.
@@ -78,25 +73,56 @@ pub fn irradiance_map(
     settings: &ReferenceSettings,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<ReferenceMap, ReferenceError> {
+    count(resolved, settings, progress, &|| false).map(|counted| counted.map)
+}
+
+/// A map, and how much of its light meshes stop.
+pub(super) struct CountedMap {
+    pub(super) map: ReferenceMap,
+    /// Share per texel, 0 … 1; `None` without meshes.
+    pub(super) shadow: Option<Vec<f64>>,
+}
+
+/// As [`irradiance_map`], until `cancelled` says that nobody waits for it.
+pub(super) fn count(
+    resolved: &ResolvedScene,
+    settings: &ReferenceSettings,
+    progress: &(dyn Fn(f64) + Sync),
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<CountedMap, ReferenceError> {
     settings.check()?;
-    let water = &resolved.scene.water;
+    let extinction_per_m = check_water(&resolved.scene.water)?;
+    // Channels with the same extinction are counted once.
+    let mut different = extinction_per_m.to_vec();
+    different.dedup();
+    match different[..] {
+        [a] => Counter::new(resolved, [a], [0; 3])?.run(settings, progress, cancelled),
+        [a, b] if extinction_per_m[0] == extinction_per_m[1] => {
+            Counter::new(resolved, [a, b], [0, 0, 1])?.run(settings, progress, cancelled)
+        }
+        [a, b] => Counter::new(resolved, [a, b], [0, 1, 1])?.run(settings, progress, cancelled),
+        _ => {
+            Counter::new(resolved, extinction_per_m, [0, 1, 2])?.run(settings, progress, cancelled)
+        }
+    }
+}
+
+/// The extinction of a water that can be counted in, 1/m.
+pub(super) fn check_water(water: &Water) -> Result<[f64; 3], ReferenceError> {
     let mut extinction_per_m = [0.0; 3];
     for (c, extinction) in extinction_per_m.iter_mut().enumerate() {
         *extinction = water.absorption_per_m[c] + water.scattering_per_m[c];
         check("water extinction (a + b), 1/m", *extinction, 0.0, f64::MAX)?;
     }
     check("water.ior", water.ior, 1.0, f64::MAX)?;
-    // Channels with the same extinction are counted once.
-    let mut different = extinction_per_m.to_vec();
-    different.dedup();
-    match different[..] {
-        [a] => Counter::new(resolved, [a], [0; 3])?.run(settings, progress),
-        [a, b] if extinction_per_m[0] == extinction_per_m[1] => {
-            Counter::new(resolved, [a, b], [0, 0, 1])?.run(settings, progress)
-        }
-        [a, b] => Counter::new(resolved, [a, b], [0, 1, 1])?.run(settings, progress),
-        _ => Counter::new(resolved, extinction_per_m, [0, 1, 2])?.run(settings, progress),
-    }
+    Ok(extinction_per_m)
+}
+
+/// Refuses waves that are no numbers.
+pub(super) fn check_surface(surface: &WaterSurface) -> Result<(), ReferenceError> {
+    let height_m = surface.max_height_m();
+    check("the waves' height, m", height_m, f64::MIN, f64::MAX)?;
+    check("the waves' slope", surface.max_slope(), f64::MIN, f64::MAX)
 }
 
 fn check(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), ReferenceError> {
@@ -111,7 +137,7 @@ fn check(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), Refe
 }
 
 /// The suns that shine into the water of `scene`.
-fn suns(scene: &Scene) -> Result<Vec<&Sun>, ReferenceError> {
+pub(super) fn suns(scene: &Scene) -> Result<Vec<&Sun>, ReferenceError> {
     let only = match &scene.output {
         Output::IrradianceMap(output) => output.light,
         Output::View(_) => None,
@@ -180,13 +206,7 @@ impl<'a, const K: usize> Counter<'a, K> {
         let map = FloorMap::of(scene)?;
         let occluders = Occluders::of(resolved, map.origin_m)?;
         let surface = WaterSurface::of(scene).recentred(map.origin_m);
-        check(
-            "the waves' height, m",
-            surface.max_height_m(),
-            f64::MIN,
-            f64::MAX,
-        )?;
-        check("the waves' slope", surface.max_slope(), f64::MIN, f64::MAX)?;
+        check_surface(&surface)?;
         let size_m = map.size_m();
         let mut targets = vec![Target {
             min_m: DVec3::new(0.0, -map.depth_m, 0.0),
@@ -231,7 +251,8 @@ impl<'a, const K: usize> Counter<'a, K> {
         &self,
         settings: &ReferenceSettings,
         progress: &(dyn Fn(f64) + Sync),
-    ) -> Result<ReferenceMap, ReferenceError> {
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Result<CountedMap, ReferenceError> {
         let most = settings.max_rays as f64;
         let target = settings.target_error.unwrap_or(0.0);
         let mut rays = match settings.target_error {
@@ -242,7 +263,7 @@ impl<'a, const K: usize> Counter<'a, K> {
         let mut first = true;
         loop {
             let planned = counted.load(Ordering::Relaxed) as f64 + rays;
-            let round = self.round(rays, &|more| {
+            let round = self.round(rays, cancelled, &|more| {
                 let done = counted.fetch_add(more, Ordering::Relaxed) + more;
                 // Before the first error is known nobody can tell how much there is to do.
                 if !first || rays >= most {
@@ -250,9 +271,15 @@ impl<'a, const K: usize> Counter<'a, K> {
                 }
             });
             first = false;
+            if cancelled() {
+                return Err(ReferenceError::Cancelled);
+            }
             if round.relative_error <= target || rays >= most {
                 progress(1.0);
-                return Ok(self.finish(round));
+                return Ok(CountedMap {
+                    shadow: self.shadow(&round),
+                    map: self.finish(round),
+                });
             }
             let growth = 1.1 * (round.relative_error / target).powf(1.0 / ORDER);
             rays = (rays * growth.clamp(2.0, MOST_GROWTH)).min(most);
@@ -260,7 +287,12 @@ impl<'a, const K: usize> Counter<'a, K> {
     }
 
     /// Two halves with different lattices and independent shifts, about `rays` rays together.
-    fn round(&self, rays: f64, counted: &(dyn Fn(u64) + Sync)) -> Round<K> {
+    fn round(
+        &self,
+        rays: f64,
+        cancelled: &(dyn Fn() -> bool + Sync),
+        counted: &(dyn Fn(u64) + Sync),
+    ) -> Round<K> {
         let per_texel = rays / self.texels_of_water().max(f64::MIN_POSITIVE);
         let mut halves = [
             vec![[0.0; 3]; self.map.len()],
@@ -283,8 +315,8 @@ impl<'a, const K: usize> Counter<'a, K> {
                 let key = (index * 2 + half) as u64 * 2;
                 let shift = DVec2::new(uniform(key), uniform(key + 1));
                 let lattice = Lattice::new(points_per_texel, self.map.texel_m, shift, half == 1);
-                points_per_texel = SECOND_TO_FIRST * lattice.points_per_texel(self.map.texel_m);
-                let tally = beam.trace(&lattice, counted);
+                points_per_texel = SECOND_HALF * lattice.points_per_texel(self.map.texel_m);
+                let tally = beam.trace(&lattice, counted, cancelled);
                 self.add_irradiance(&tally, sun, irradiance);
                 match &mut both {
                     Some(both) => both.add(&tally),
@@ -309,6 +341,34 @@ impl<'a, const K: usize> Counter<'a, K> {
                 sum[c] += counted[self.coefficient_of[c]] * per_texel * sun.irradiance_w_m2[c];
             }
         }
+    }
+
+    /// Light that meshes stop over all that would be there, per texel, all suns and channels together.
+    fn shadow(&self, round: &Round<K>) -> Option<Vec<f64>> {
+        if self.occluders.is_empty() {
+            return None;
+        }
+        let mut stopped_landed = vec![[0.0; 2]; self.map.len()];
+        for (tally, sun) in round.tallies.iter().zip(&self.suns) {
+            let weighed = |values: &[f64; K]| -> f64 {
+                (0..3)
+                    .map(|c| values[self.coefficient_of[c]] * sun.irradiance_w_m2[c])
+                    .sum()
+            };
+            for (sum, (stopped, landed)) in stopped_landed
+                .iter_mut()
+                .zip(tally.shaded.iter().zip(&tally.texels))
+            {
+                sum[0] += weighed(stopped);
+                sum[1] += weighed(landed);
+            }
+        }
+        Some(
+            stopped_landed
+                .into_iter()
+                .map(|[stopped, landed]| share(stopped, landed))
+                .collect(),
+        )
     }
 
     fn finish(&self, round: Round<K>) -> ReferenceMap {
@@ -361,8 +421,17 @@ impl<'a, const K: usize> Counter<'a, K> {
     }
 }
 
+/// stopped / (stopped + landed); 0 where there is no light either way.
+pub(super) fn share(stopped: f64, landed: f64) -> f64 {
+    if stopped > 0.0 {
+        stopped / (stopped + landed)
+    } else {
+        0.0
+    }
+}
+
 /// ‖A − B‖₁ / ‖A + B‖₁; 0 when both are black.
-fn half_difference(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+pub(super) fn half_difference(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let (mut difference, mut total) = (0.0, 0.0);
     for (a, b) in a.iter().flatten().zip(b.iter().flatten()) {
         difference += (a - b).abs();
@@ -371,7 +440,7 @@ fn half_difference(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     if total > 0.0 { difference / total } else { 0.0 }
 }
 
-fn mean(a: &[[f64; 3]], b: &[[f64; 3]]) -> Vec<[f64; 3]> {
+pub(super) fn mean(a: &[[f64; 3]], b: &[[f64; 3]]) -> Vec<[f64; 3]> {
     a.iter()
         .zip(b)
         .map(|(a, b)| std::array::from_fn(|c| 0.5 * (a[c] + b[c])))

@@ -17,17 +17,24 @@
 //! Model: suns are points at infinity; waves do not shade each other and light that a surface reflects is not followed;
 //! objects stop light under the water only, not on its way to the water; light that is refracted upwards is lost.
 
+mod camera;
 pub mod closed_form;
 mod floor;
 mod lattice;
 mod map;
 mod occluders;
+mod patch;
+mod place;
 mod refract;
 mod settings;
+mod slanted;
 mod tally;
 mod trace;
+mod truth;
+mod view;
 mod window;
 
 pub use map::{EnergyTerms, ReferenceMap, irradiance_map};
-pub use settings::{ReferenceError, ReferenceSettings};
+pub use settings::{ReferenceError, ReferenceSettings, TruthSettings};
+pub use truth::{Truth, TruthKind, truth};
 pub use window::{LightWindow, light_window};

@@ -15,6 +15,8 @@ struct WorldTriangle {
     corner_m: DVec3,
     edge_1_m: DVec3,
     edge_2_m: DVec3,
+    /// Shading normals at the corners, of any length.
+    normals: [DVec3; 3],
     object: usize,
     node: usize,
 }
@@ -48,6 +50,17 @@ pub(super) struct Hit {
     pub(super) fraction: f64,
     /// Index into the scene's objects.
     pub(super) object: usize,
+}
+
+/// What a ray sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    /// Way to it, m.
+    pub(super) distance_m: f64,
+    /// Index into the scene's objects.
+    pub(super) object: usize,
+    /// Unit shading normal on the side that is seen.
+    pub(super) normal: DVec3,
 }
 
 /// All triangles of a scene.
@@ -100,6 +113,8 @@ impl Occluders {
                     corner_m: a,
                     edge_1_m: b - a,
                     edge_2_m: c - a,
+                    // Normals go with the transposed inverse of the placement.
+                    normals: triangle.normals.map(|n| rotation * (n.as_dvec3() / scale)),
                     object: index,
                     node: 0,
                 });
@@ -131,7 +146,144 @@ impl Occluders {
         to_m: DVec3,
         stack: &mut Vec<usize>,
     ) -> Option<Hit> {
-        let way = to_m - from_m;
+        let mut best: Option<Hit> = None;
+        self.walk(
+            from_m,
+            to_m - from_m,
+            1.0,
+            stack,
+            |triangle, [t, ..], until| {
+                if t < until {
+                    best = Some(Hit {
+                        fraction: t,
+                        object: triangle.object,
+                    });
+                    return t;
+                }
+                until
+            },
+        );
+        best
+    }
+
+    /// The first triangle that the ray from `from_m` along unit `direction` meets before `until_m`, with its shading normal
+    /// turned to the side that is seen.
+    pub(super) fn first_seen(
+        &self,
+        from_m: DVec3,
+        direction: DVec3,
+        until_m: f64,
+        stack: &mut Vec<usize>,
+    ) -> Option<Seen> {
+        let mut best: Option<Seen> = None;
+        self.walk(
+            from_m,
+            direction,
+            until_m,
+            stack,
+            |triangle, [t, u, v], until| {
+                if t < until {
+                    best = Some(Seen {
+                        distance_m: t,
+                        object: triangle.object,
+                        normal: triangle.normal_towards(direction, u, v),
+                    });
+                    return t;
+                }
+                until
+            },
+        );
+        best
+    }
+
+    /// Whether a triangle stands between `from_m` and `to_m`. Those of object `own` count up to the fraction `own_until` of
+    /// the way only.
+    pub(super) fn blocks(
+        &self,
+        from_m: DVec3,
+        to_m: DVec3,
+        own: Option<usize>,
+        own_until: f64,
+        stack: &mut Vec<usize>,
+    ) -> bool {
+        let mut blocked = false;
+        self.walk(
+            from_m,
+            to_m - from_m,
+            1.0,
+            stack,
+            |triangle, [t, ..], until| {
+                if Some(triangle.object) != own || t < own_until {
+                    blocked = true;
+                    return -1.0; // nothing more to look for
+                }
+                until
+            },
+        );
+        blocked
+    }
+
+    /// Puts into `fractions` where the way from `from_m` to `to_m` crosses `object`, in order.
+    pub(super) fn crossings(
+        &self,
+        object: usize,
+        from_m: DVec3,
+        to_m: DVec3,
+        stack: &mut Vec<usize>,
+        fractions: &mut Vec<f64>,
+    ) {
+        fractions.clear();
+        self.walk(
+            from_m,
+            to_m - from_m,
+            1.0,
+            stack,
+            |triangle, [t, ..], until| {
+                if triangle.object == object {
+                    fractions.push(t);
+                }
+                until
+            },
+        );
+        fractions.sort_by(f64::total_cmp);
+    }
+
+    /// Whether `object` is met farther than `beyond_m` from `from_m` along unit `direction`.
+    pub(super) fn meets_object(
+        &self,
+        object: usize,
+        from_m: DVec3,
+        direction: DVec3,
+        beyond_m: f64,
+        stack: &mut Vec<usize>,
+    ) -> bool {
+        let mut met = false;
+        self.walk(
+            from_m,
+            direction,
+            f64::MAX,
+            stack,
+            |triangle, [t, ..], until| {
+                if triangle.object == object && t > beyond_m {
+                    met = true;
+                    return -1.0;
+                }
+                until
+            },
+        );
+        met
+    }
+
+    /// Calls `visit` with every triangle that the ray `from_m` + t `way` meets at 0 ≤ t ≤ `until`, in no order; (t, u, v) of
+    /// the meeting, and `until`, for which it gives the new one.
+    fn walk(
+        &self,
+        from_m: DVec3,
+        way: DVec3,
+        mut until: f64,
+        stack: &mut Vec<usize>,
+        mut visit: impl FnMut(&WorldTriangle, [f64; 3], f64) -> f64,
+    ) {
         let per_way = way.recip();
         let meets = |min_m: DVec3, max_m: DVec3, until: f64| -> bool {
             // f64::min and max drop the NaN of 0 · ∞: a ray within a face's plane counts as meeting the box.
@@ -145,15 +297,11 @@ impl Occluders {
             // Slack for rounding: boxes of level triangles have no thickness.
             enter.max(0.0) <= leave.min(until) + 1e-12
         };
-        let mut best: Option<Hit> = None;
-        let mut until = 1.0;
-        if !meets(self.all.min_m, self.all.max_m, until) {
-            return None;
+        if self.tree.nodes.is_empty() || !meets(self.all.min_m, self.all.max_m, until) {
+            return;
         }
         stack.clear();
-        if !self.tree.nodes.is_empty() {
-            stack.push(0);
-        }
+        stack.push(0);
         while let Some(index) = stack.pop() {
             match &self.tree.nodes[index] {
                 BvhNode::Node {
@@ -175,26 +323,24 @@ impl Occluders {
                 }
                 BvhNode::Leaf { shape_index, .. } => {
                     let triangle = &self.triangles[*shape_index];
-                    if let Some(fraction) = triangle.crossing(from_m, way)
-                        && fraction < until
+                    if let Some(met) = triangle.crossing(from_m, way)
+                        && (0.0..=until).contains(&met[0])
                     {
-                        until = fraction;
-                        best = Some(Hit {
-                            fraction,
-                            object: triangle.object,
-                        });
+                        until = visit(triangle, met, until);
+                        if until < 0.0 {
+                            return;
+                        }
                     }
                 }
             }
         }
-        best
     }
 }
 
 impl WorldTriangle {
-    /// Where `from_m + t · way` with t in 0 … 1 crosses the triangle. Möller & Trumbore, Journal of Graphics Tools 2(1), 1997,
+    /// (t, u, v) where the line `from_m + t · way` crosses the triangle. Möller & Trumbore, Journal of Graphics Tools 2(1), 1997,
     /// without culling: water lights both sides of an open mesh.
-    fn crossing(&self, from_m: DVec3, way: DVec3) -> Option<f64> {
+    fn crossing(&self, from_m: DVec3, way: DVec3) -> Option<[f64; 3]> {
         let across = way.cross(self.edge_2_m);
         let determinant = self.edge_1_m.dot(across);
         if determinant == 0.0 {
@@ -208,6 +354,20 @@ impl WorldTriangle {
             return None;
         }
         let t = self.edge_2_m.dot(turned) / determinant;
-        (0.0..=1.0).contains(&t).then_some(t)
+        Some([t, u, v])
+    }
+
+    /// Interpolated unit normal at (u, v), on the side that a ray along `direction` sees. The face says which side that is: a
+    /// shading normal turns away at silhouettes.
+    fn normal_towards(&self, direction: DVec3, u: f64, v: f64) -> DVec3 {
+        let [a, b, c] = self.normals;
+        let shading = (a * (1.0 - u - v) + b * u + c * v).normalize();
+        let face = self.edge_1_m.cross(self.edge_2_m);
+        let outward = if face.dot(shading) < 0.0 { -face } else { face };
+        if outward.dot(direction) > 0.0 {
+            -shading
+        } else {
+            shading
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! How long to count, and why a scene cannot be counted.
 
+use std::path::PathBuf;
+
 /// When the counting stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceSettings {
@@ -35,6 +37,51 @@ impl ReferenceSettings {
             )),
             _ => Ok(()),
         }
+    }
+}
+
+/// When the search for a [`super::Truth`] stops, and where it is kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TruthSettings {
+    /// Relative L1 error at which the truth is good enough, above 0; `None`: spend `max_rays`.
+    pub target_error: Option<f64>,
+    /// Most rays of a round, both halves and all suns together, 1 …
+    pub max_rays: u64,
+    /// Most pixels of a view that are looked at, 1 …; maps are always whole.
+    pub most_points: u32,
+    /// Folder that keeps truths from one run to the next; made when it is not there. `None`: nothing is kept.
+    pub disk: Option<PathBuf>,
+}
+
+impl Default for TruthSettings {
+    fn default() -> Self {
+        Self {
+            target_error: Some(5e-3),
+            max_rays: 4_000_000_000,
+            most_points: 6000,
+            disk: None,
+        }
+    }
+}
+
+impl TruthSettings {
+    /// What the counting engines go by.
+    pub(super) fn counting(&self) -> ReferenceSettings {
+        ReferenceSettings {
+            target_error: self.target_error,
+            max_rays: self.max_rays,
+            ..ReferenceSettings::default()
+        }
+    }
+
+    pub(super) fn check(&self) -> Result<(), ReferenceError> {
+        self.counting().check()?;
+        if self.most_points == 0 {
+            return Err(ReferenceError::Settings(
+                "most_points is 0; it must be 1 or more".to_owned(),
+            ));
+        }
+        Ok(())
     }
 }
 
@@ -94,6 +141,23 @@ pub enum ReferenceError {
         /// What would be accepted.
         accepted: &'static str,
     },
+    /// A view without a camera.
+    #[error("the output is a view and the scene has no camera; the reference needs one")]
+    NoCamera,
+    /// A map on an object that is not there.
+    #[error("output.receiver is object {index}; the scene has {objects} objects, counted from 0")]
+    NoObject {
+        /// What was asked for.
+        index: u32,
+        /// Length of `objects`.
+        objects: usize,
+    },
+    /// The figures of the scene do not fit together.
+    #[error("the scene cannot be counted: {0}")]
+    Scene(String),
+    /// The caller said that nobody waits any more.
+    #[error("cancelled before the reference was good enough")]
+    Cancelled,
     /// The settings make no sense.
     #[error("reference settings: {0}")]
     Settings(String),

@@ -8,6 +8,8 @@ use super::floor::FloorMap;
 pub(super) struct Tally<const K: usize> {
     /// Landed per texel.
     pub(super) texels: Vec<[f64; K]>,
+    /// Would have landed per texel, had no mesh stood in the way; empty when none can.
+    pub(super) shaded: Vec<[f64; K]>,
     /// Landed per object.
     pub(super) objects: Vec<[f64; K]>,
     /// Fell on the water.
@@ -28,6 +30,7 @@ impl<const K: usize> Tally<K> {
     pub(super) fn new(map: &FloorMap, objects: usize) -> Self {
         Self {
             texels: vec![[0.0; K]; map.len()],
+            shaded: vec![[0.0; K]; if objects > 0 { map.len() } else { 0 }],
             objects: vec![[0.0; K]; objects],
             emitted: 0.0,
             reflected: 0.0,
@@ -40,7 +43,8 @@ impl<const K: usize> Tally<K> {
 
     /// Multiplies every sum.
     pub(super) fn scale(&mut self, factor: f64) {
-        let many = self.texels.iter_mut().chain(&mut self.objects);
+        let many = self.texels.iter_mut().chain(&mut self.shaded);
+        let many = many.chain(&mut self.objects);
         for value in many.chain([&mut self.lost, &mut self.left]).flatten() {
             *value *= factor;
         }
@@ -52,6 +56,9 @@ impl<const K: usize> Tally<K> {
     /// Adds `other`; sums depend on the order of the calls, so keep it fixed.
     pub(super) fn add(&mut self, other: &Self) {
         for (sum, value) in self.texels.iter_mut().zip(&other.texels) {
+            add_to(sum, value);
+        }
+        for (sum, value) in self.shaded.iter_mut().zip(&other.shaded) {
             add_to(sum, value);
         }
         for (sum, value) in self.objects.iter_mut().zip(&other.objects) {

@@ -30,13 +30,20 @@ pub(super) struct Beam<'a, const K: usize> {
 }
 
 impl<const K: usize> Beam<'_, K> {
-    /// Counts every ray of `lattice` in the window; `counted` hears how many rays were counted since it was last called.
+    /// Counts every ray of `lattice` in the window; `counted` hears how many rays were counted since it was last called. Once
+    /// `cancelled` says so, the rest is left out and the tally is of no use.
     ///
     /// The number of bands and the order of their sum depend on the map only, so the bits do not depend on the threads.
-    pub(super) fn trace(&self, lattice: &Lattice, counted: &(dyn Fn(u64) + Sync)) -> Tally<K> {
+    pub(super) fn trace(
+        &self,
+        lattice: &Lattice,
+        counted: &(dyn Fn(u64) + Sync),
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Tally<K> {
         let (first, end) = lattice.rows(&self.window);
         let rows = usize::try_from(end - first).unwrap_or(0);
-        let map_bytes = self.map.len() * size_of::<[f64; K]>();
+        let maps = if self.occluders.is_empty() { 1 } else { 2 };
+        let map_bytes = maps * self.map.len() * size_of::<[f64; K]>();
         let bands = (BAND_BYTES / map_bytes.max(1))
             .clamp(2, MOST_BANDS)
             .min(rows.max(1));
@@ -54,6 +61,9 @@ impl<const K: usize> Beam<'_, K> {
                 let mut block = Block::new();
                 let mut stack = Vec::new();
                 for row in rows * band / bands..rows * (band + 1) / bands {
+                    if cancelled() {
+                        break;
+                    }
                     let row = lattice.row(first + row as i64, &self.window);
                     let mut done = 0;
                     while done < row.count {
@@ -114,6 +124,12 @@ impl<const K: usize> Beam<'_, K> {
             }
             if let Some(hit) = hit {
                 add_to(&mut tally.objects[hit.object], &arrived);
+                if let Some(texel) = self.map.texel_at(x_m, z_m) {
+                    let stopped = self
+                        .extinction_per_m
+                        .map(|c| entered * transmission(c, block.path_m[i]));
+                    add_to(&mut tally.shaded[texel], &stopped);
+                }
             } else if let Some(texel) = self.map.texel_at(x_m, z_m) {
                 add_to(&mut tally.texels[texel], &arrived);
             } else {

@@ -6,6 +6,8 @@
     reason = "`json!` literals are passed as they are"
 )]
 
+mod accuracy_metrics;
+mod accuracy_plot;
 mod cli;
 mod cli_program;
 mod cli_scene_file;
@@ -37,6 +39,8 @@ mod scene_shapes;
 mod scene_validate;
 mod shader_constants;
 mod shaders;
+#[path = "../support/synthetic_study.rs"]
+mod synthetic_study;
 mod teapot;
 mod tone;
 mod waves;

@@ -1,0 +1,70 @@
+//! Order of convergence of a sweep: how fast the error falls with a dial.
+
+use serde_json::Value;
+
+use super::metrics::convergence_order;
+use super::study::{Point, Study, Sweep};
+
+/// A setting takes part in the fit when its error is at least this many times the truth's own: below, the noise of the truth
+/// bends the curve.
+pub const TRUTH_MARGIN: f64 = 3.0;
+
+/// A power law: error = `error_at_one` · dial^−`order`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OrderFit {
+    /// Order of convergence, above 0 when the error falls.
+    pub order: f64,
+    /// Natural logarithm of the relative L1 error that the law gives for a dial of 1.
+    pub ln_error_at_one: f64,
+    /// Whether each setting of the sweep took part.
+    pub used: Vec<bool>,
+}
+
+impl OrderFit {
+    /// Relative L1 error that the law gives for a dial (above 0).
+    pub fn error_at(&self, dial: f64) -> f64 {
+        (self.ln_error_at_one - self.order * dial.ln()).exp()
+    }
+}
+
+/// Value of the sweep's one dial at a point, as a number above 0; nothing for several dials, words, switches and 0.
+pub fn dial_number(sweep: &Sweep, point: &Point) -> Option<f64> {
+    let value = point.dials.get(&sweep.dial).and_then(Value::as_f64)?;
+    (point.dials.len() == 1 && value > 0.0).then_some(value)
+}
+
+/// Fits a power law by least squares of the logarithms, to the settings whose error is at least [`TRUTH_MARGIN`] times the
+/// truth's own. Nothing when fewer than two different ones remain.
+pub fn fit_order(sweep: &Sweep, truth_relative_error: f64) -> Option<OrderFit> {
+    let candidates: Vec<Option<(f64, f64)>> = sweep
+        .points
+        .iter()
+        .map(|point| {
+            let error = point.error.relative_l1;
+            let clear = error > 0.0 && error >= TRUTH_MARGIN * truth_relative_error;
+            dial_number(sweep, point)
+                .filter(|_| clear)
+                .map(|dial| (dial, error))
+        })
+        .collect();
+    let points: Vec<(f64, f64)> = candidates.iter().copied().flatten().collect();
+    let order = convergence_order(&points);
+    if !order.is_finite() {
+        return None;
+    }
+    // The line of least squares passes through the mean.
+    let sum: f64 = points.iter().map(|(n, e)| e.ln() + order * n.ln()).sum();
+    Some(OrderFit {
+        order,
+        ln_error_at_one: sum / points.len() as f64,
+        used: candidates.iter().map(Option::is_some).collect(),
+    })
+}
+
+/// Fills [`Sweep::order`] of every sweep.
+pub fn fit_orders(study: &mut Study) {
+    let floor = study.truth.relative_error;
+    for sweep in &mut study.sweeps {
+        sweep.order = fit_order(sweep, floor).map(|fit| fit.order);
+    }
+}

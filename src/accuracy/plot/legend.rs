@@ -1,0 +1,95 @@
+//! What each mark stands for, right of the plot; below it, remarks.
+
+use plotters::prelude::DrawingBackend;
+use plotters::style::RGBColor;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::canvas::{Canvas, Stroke, TextLook};
+use super::error::PlotError;
+use super::frame::{LEGEND_LEFT, LEGEND_RIGHT, TOP};
+use super::marker;
+use super::palette::{INK, SOFT_INK};
+
+/// How an entry is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Sign {
+    /// The marker of a sweep.
+    Marker {
+        sweep: usize,
+        colour: RGBColor,
+        hollow: bool,
+    },
+    Line(Stroke),
+    Dashed(Stroke),
+}
+
+/// A line of the legend.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    pub sign: Sign,
+    pub text: String,
+}
+
+const SIZE: f64 = 13.0;
+const STEP: f64 = 22.0;
+const SIGN_WIDTH: f64 = 22.0;
+
+/// Draws the entries from the top down, then the remarks, wrapped.
+pub(super) fn draw<DB: DrawingBackend>(
+    canvas: &mut Canvas<'_, DB>,
+    entries: &[Entry],
+    remarks: &[String],
+) -> Result<(), PlotError> {
+    let mut y = TOP + 8.0;
+    for entry in entries {
+        let (left, right) = (LEGEND_LEFT, LEGEND_LEFT + SIGN_WIDTH);
+        let middle = 0.5 * (left + right);
+        match entry.sign {
+            Sign::Marker {
+                sweep,
+                colour,
+                hollow,
+            } => marker::draw(canvas, sweep, (middle, y), colour, hollow)?,
+            Sign::Line(stroke) => canvas.line((left, y), (right, y), stroke)?,
+            Sign::Dashed(stroke) => canvas.dashed((left, y), (right, y), 4.0, stroke)?,
+        }
+        let look = TextLook::new(SIZE, INK);
+        for line in wrapped(canvas, &entry.text, SIZE, LEGEND_RIGHT - right - 8.0)? {
+            canvas.text(&line, (right + 8.0, y), look)?;
+            y += 17.0;
+        }
+        y += STEP - 17.0;
+    }
+    y += 10.0;
+    for remark in remarks {
+        for line in wrapped(canvas, remark, 11.0, LEGEND_RIGHT - LEGEND_LEFT)? {
+            let look = TextLook::new(11.0, SOFT_INK).at(HPos::Left, VPos::Center);
+            canvas.text(&line, (LEGEND_LEFT, y), look)?;
+            y += 14.0;
+        }
+        y += 6.0;
+    }
+    Ok(())
+}
+
+/// Lines of words no wider than `width`; a single word that is wider ends in an ellipsis.
+fn wrapped<DB: DrawingBackend>(
+    canvas: &Canvas<'_, DB>,
+    text: &str,
+    size: f64,
+    width: f64,
+) -> Result<Vec<String>, PlotError> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        let longer = match lines.last() {
+            Some(line) => format!("{line} {word}"),
+            None => word.to_owned(),
+        };
+        if lines.is_empty() || canvas.text_width(&longer, size)? > width {
+            lines.push(canvas.fitted(word, size, width)?);
+        } else if let Some(line) = lines.last_mut() {
+            *line = longer;
+        }
+    }
+    Ok(lines)
+}

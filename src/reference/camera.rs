@@ -1,0 +1,210 @@
+//! What a camera sees, exactly: through the waves to the first surface, as the camera pass of the renderer is documented to.
+
+use glam::{DVec2, DVec3};
+
+use super::ReferenceError;
+use super::place::Place;
+use crate::physics::refraction::{normal_from_slope, reflect_direction, refract_direction};
+use crate::scene::facts::CameraFacts;
+
+/// Above the water by more than this counts as dry, m: rounding of a floor that lies in the water's plane.
+const DRY_M: f64 = 1e-9;
+/// Smallest and largest side of a pixel's footprint, m.
+const SIDES_M: (f64, f64) = (1e-4, 1.0);
+
+/// The point that a pixel shows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ViewPoint {
+    /// Local position, m.
+    pub(super) position_m: DVec3,
+    /// Unit shading normal towards the viewer.
+    pub(super) normal: DVec3,
+    /// Index of the object; `None`: the floor.
+    pub(super) object: Option<usize>,
+    /// Whether it stands out of the water.
+    pub(super) dry: bool,
+    /// Side of the square that the pixel covers there, m.
+    pub(super) side_m: f64,
+}
+
+/// By which way a pixel sees its point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Way {
+    /// Straight.
+    Direct,
+    /// From the air down into the water.
+    Refracted,
+    /// From the water up into the air.
+    Left,
+    /// Mirrored at the water from below.
+    Mirrored,
+}
+
+/// A ray.
+#[derive(Clone, Copy, Debug)]
+struct Ray {
+    from_m: DVec3,
+    direction: DVec3,
+}
+
+/// A camera in its place.
+pub(super) struct Viewer<'a> {
+    place: &'a Place,
+    camera: &'a CameraFacts,
+    /// Whether the ray of a pixel starts above the water is asked per ray: an image plane may dip into the waves.
+    stack: Vec<usize>,
+}
+
+impl<'a> Viewer<'a> {
+    pub(super) fn of(place: &'a Place) -> Result<Self, ReferenceError> {
+        let camera = place
+            .facts
+            .camera
+            .as_ref()
+            .ok_or(ReferenceError::NoCamera)?;
+        Ok(Self {
+            place,
+            camera,
+            stack: Vec::new(),
+        })
+    }
+
+    /// What the middle of a pixel shows, numbered from the upper left; `None`: no surface.
+    pub(super) fn look(&mut self, pixel: [u32; 2]) -> Option<ViewPoint> {
+        let at = DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
+        let ray = self.pixel_ray(at);
+        let above = self.place.over_water_m(ray.from_m) >= 0.0;
+        let until_m = self
+            .place
+            .meet_water(ray.from_m, ray.direction, if above { 1.0 } else { -1.0 })
+            .unwrap_or(f64::MAX);
+        if let Some(point) = self.first_surface(ray, until_m, true) {
+            return Some(self.finish(point, at, Way::Direct));
+        }
+        if until_m == f64::MAX {
+            return None;
+        }
+        let ways: &[Way] = if above {
+            &[Way::Refracted]
+        } else {
+            // What stands in the air hides the mirror image of what stands in the water.
+            &[Way::Left, Way::Mirrored]
+        };
+        for &way in ways {
+            if let Some(ray) = self.last_leg(at, way)
+                && let Some(point) = self.first_surface(ray, f64::MAX, way != Way::Left)
+            {
+                return Some(self.finish(point, at, way));
+            }
+        }
+        None
+    }
+
+    /// The ray through `at`, in pixels from the upper left corner.
+    fn pixel_ray(&self, at: DVec2) -> Ray {
+        let camera = self.camera;
+        let right = 2.0 * at.x / f64::from(camera.width) - 1.0;
+        let up = 1.0 - 2.0 * at.y / f64::from(camera.height);
+        let offset = camera.right * right + camera.up * up;
+        if camera.orthographic {
+            Ray {
+                from_m: camera.eye + offset,
+                direction: camera.forward,
+            }
+        } else {
+            Ray {
+                from_m: camera.eye,
+                direction: (camera.forward + offset).normalize(),
+            }
+        }
+    }
+
+    /// The last straight piece of the way through `at`.
+    fn last_leg(&self, at: DVec2, way: Way) -> Option<Ray> {
+        let ray = self.pixel_ray(at);
+        if way == Way::Direct {
+            return Some(ray);
+        }
+        let side = if way == Way::Refracted { 1.0 } else { -1.0 };
+        let t = self.place.meet_water(ray.from_m, ray.direction, side)?;
+        let from_m = ray.from_m + ray.direction * t;
+        let slope = self.place.facts.surface.at(from_m.x, from_m.z).slope;
+        let normal = normal_from_slope(slope.x, slope.y) * side;
+        let ior = self.place.facts.ior;
+        let direction = match way {
+            Way::Refracted => refract_direction(ray.direction, normal, ior)?,
+            Way::Left => refract_direction(ray.direction, normal, 1.0 / ior)?,
+            Way::Mirrored | Way::Direct => reflect_direction(ray.direction, normal),
+        };
+        Some(Ray { from_m, direction })
+    }
+
+    /// Position, normal and object of the first surface before `until_m`.
+    fn first_surface(
+        &mut self,
+        ray: Ray,
+        until_m: f64,
+        with_floor: bool,
+    ) -> Option<(DVec3, DVec3, Option<usize>)> {
+        let Ray { from_m, direction } = ray;
+        let mut nearest_m = until_m;
+        let mut found = None;
+        if let Some(floor) = &self.place.facts.floor
+            && with_floor
+            && direction.y < 0.0
+        {
+            let t = (floor.y_m - from_m.y) / direction.y;
+            let p = from_m + direction * t;
+            let inside = DVec2::new(p.x, p.z).cmpge(floor.rect.min).all()
+                && DVec2::new(p.x, p.z).cmple(floor.rect.max).all();
+            if t > 0.0 && t < nearest_m && inside {
+                nearest_m = t;
+                let on_floor = DVec3::new(p.x, floor.y_m, p.z);
+                found = Some((on_floor, DVec3::Y, None));
+            }
+        }
+        let seen = self
+            .place
+            .occluders
+            .first_seen(from_m, direction, nearest_m, &mut self.stack);
+        if let Some(seen) = seen {
+            let p = from_m + direction * seen.distance_m;
+            found = Some((p, seen.normal, Some(seen.object)));
+        }
+        found
+    }
+
+    fn finish(
+        &self,
+        (position_m, normal, object): (DVec3, DVec3, Option<usize>),
+        at: DVec2,
+        way: Way,
+    ) -> ViewPoint {
+        ViewPoint {
+            position_m,
+            normal,
+            object,
+            dry: self.place.over_water_m(position_m) > DRY_M,
+            side_m: self.side_m(position_m, normal, at, way),
+        }
+    }
+
+    /// The geometric mean of the distances between `p_m` and where the rays of the next pixels along x and y meet its plane.
+    fn side_m(&self, p_m: DVec3, normal: DVec3, at: DVec2, way: Way) -> f64 {
+        let to_next = |step: DVec2| {
+            [step, -step].into_iter().find_map(|step| {
+                let Ray { from_m, direction } = self.last_leg(at + step, way)?;
+                let t = (p_m - from_m).dot(normal) / direction.dot(normal);
+                let distance_m = (from_m + direction * t).distance(p_m);
+                (t > 0.0 && distance_m.is_finite()).then_some(distance_m)
+            })
+        };
+        let (least_m, most_m) = SIDES_M;
+        let side_m = match (to_next(DVec2::X), to_next(DVec2::Y)) {
+            (Some(x_m), Some(y_m)) => (x_m * y_m).sqrt(),
+            (Some(only_m), None) | (None, Some(only_m)) => only_m,
+            (None, None) => least_m,
+        };
+        side_m.clamp(least_m, most_m)
+    }
+}

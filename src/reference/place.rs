@@ -1,0 +1,148 @@
+//! A scene in local coordinates, as the engines for views and objects need it.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+
+use super::ReferenceError;
+use super::map::{check_surface, check_water, suns};
+use super::occluders::Occluders;
+use crate::physics::refraction::{direction_to_light, refract_direction};
+use crate::physics::sky::sky_irradiance;
+use crate::scene::ResolvedScene;
+use crate::scene::facts::SceneFacts;
+use crate::waves::SurfacePoint;
+
+/// Water, meshes and lights around the local origin of [`SceneFacts`].
+pub(super) struct Place {
+    /// Camera, floor, sky and boxes, as the scene says. Of its suns only the boxes are used.
+    pub(super) facts: SceneFacts,
+    /// Meshes, in the same coordinates.
+    pub(super) occluders: Occluders,
+    /// Suns above the horizon that the output counts.
+    pub(super) suns: Vec<PlacedSun>,
+    /// Largest second derivative of the water's height along any direction, 1/m.
+    pub(super) bend_per_m: f64,
+    /// Steepest slope that the water can have.
+    pub(super) steepest: f64,
+}
+
+/// A sun.
+pub(super) struct PlacedSun {
+    pub(super) to_light: DVec3,
+    pub(super) irradiance_w_m2: [f64; 3],
+    /// Unit direction of its light under flat water.
+    pub(super) flat: DVec3,
+}
+
+impl Place {
+    pub(super) fn of(resolved: &ResolvedScene) -> Result<Self, ReferenceError> {
+        let scene = &resolved.scene;
+        check_water(&scene.water)?;
+        let suns = suns(scene)?;
+        let facts =
+            SceneFacts::of(resolved).map_err(|error| ReferenceError::Scene(error.to_string()))?;
+        check_surface(&facts.surface)?;
+        let occluders = Occluders::of(resolved, DVec2::new(facts.origin_m.x, facts.origin_m.z))?;
+        let suns = suns
+            .into_iter()
+            .filter(|sun| sun.irradiance_w_m2.iter().any(|&e| e > 0.0))
+            .filter_map(|sun| {
+                let to_light = direction_to_light(
+                    sun.elevation_deg.to_radians(),
+                    sun.azimuth_deg.to_radians(),
+                );
+                Some(PlacedSun {
+                    to_light,
+                    irradiance_w_m2: sun.irradiance_w_m2,
+                    flat: refract_direction(-to_light, DVec3::Y, facts.ior)?,
+                })
+            })
+            .collect();
+        let bend_per_m = facts
+            .surface
+            .components
+            .iter()
+            .map(|c| c.amplitude_m * TAU * TAU * c.frequency_per_m.length_squared())
+            .sum();
+        Ok(Self {
+            steepest: facts.surface.max_slope(),
+            facts,
+            occluders,
+            suns,
+            bend_per_m,
+        })
+    }
+
+    /// Height of `p_m` over the water.
+    pub(super) fn over_water_m(&self, p_m: DVec3) -> f64 {
+        p_m.y - self.facts.surface.at(p_m.x, p_m.z).height_m
+    }
+
+    /// Irradiance of the skies on a surface with unit `normal` at `p_m`, W/m²: in the air the half of the sky it faces, under
+    /// water as if that were flat.
+    pub(super) fn sky_w_m2(&self, p_m: DVec3, normal: DVec3, dry: bool) -> [f64; 3] {
+        let facts = &self.facts;
+        std::array::from_fn(|c| {
+            let radiance = facts.sky_radiance[c];
+            if dry {
+                sky_irradiance(radiance, 1.0, 0.0, 0.0, 1.0, normal.y, 1.0)
+            } else {
+                sky_irradiance(
+                    radiance,
+                    facts.sky_transmittance,
+                    facts.extinction_per_m[c],
+                    -p_m.y,
+                    facts.sky_path_factor,
+                    normal.y,
+                    1.0 / (facts.ior * facts.ior),
+                )
+            }
+        })
+    }
+
+    /// First parameter t > 0 at which the ray `from_m` + t `direction` (unit), that starts on `side` (1 above, −1 below) of the
+    /// water, crosses it.
+    ///
+    /// Every step is the longest that cannot pass the surface: as far as the steepest slope allows, or, with the derivative here
+    /// and the strongest curvature, as far as the parabola below the height stays positive. The latter turns into Newton's
+    /// method from the safe side, so that the last digits are exact and no crest is jumped.
+    pub(super) fn meet_water(&self, from_m: DVec3, direction: DVec3, side: f64) -> Option<f64> {
+        /// Steps after which a ray that neither meets the water nor leaves the layer of waves is given up.
+        const MOST_STEPS: u32 = 100_000;
+        let crest_m = self.facts.surface.max_height_m();
+        let mut t = 0.0;
+        let gap_m = side * from_m.y - crest_m;
+        if gap_m > 0.0 {
+            if side * direction.y >= 0.0 {
+                return None;
+            }
+            t = gap_m / direction.y.abs();
+        }
+        let level2 = direction.x * direction.x + direction.z * direction.z;
+        let rate = direction.y.abs() + self.steepest * level2.sqrt();
+        let bend = self.bend_per_m * level2;
+        for _ in 0..MOST_STEPS {
+            let p = from_m + direction * t;
+            let SurfacePoint { height_m, slope } = self.facts.surface.at(p.x, p.z);
+            let f = side * (p.y - height_m);
+            if f <= 1e-14 * (1.0 + p.abs().max_element()) {
+                return Some(t);
+            }
+            if side * p.y > crest_m && side * direction.y >= 0.0 {
+                return None;
+            }
+            let per_t = side * (direction.y - slope.x * direction.x - slope.y * direction.z);
+            let root = (per_t * per_t + 2.0 * bend * f).sqrt();
+            let along_parabola = if per_t < 0.0 {
+                2.0 * f / (root - per_t)
+            } else if bend > 0.0 {
+                (per_t + root) / bend
+            } else {
+                return None;
+            };
+            t += along_parabola.max(f / rate);
+        }
+        None
+    }
+}

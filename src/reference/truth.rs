@@ -1,0 +1,178 @@
+//! One entry for every kind of output: what the renderer should have answered.
+
+use std::time::Instant;
+
+use super::{ReferenceError, TruthSettings, map, view};
+use crate::scene::facts::SceneFacts;
+use crate::scene::{Output, Receiver, ResolvedScene};
+
+/// Shares of shadow between which a value lies in the soft edge itself.
+const HALF_DARK: (f64, f64) = (0.02, 0.98);
+
+/// What the values of a [`Truth`] are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TruthKind {
+    /// Texels of a map on the floor.
+    FloorMap,
+    /// Texels of a map on an object.
+    ObjectMap,
+    /// Pixels of a view.
+    View,
+}
+
+/// The truth about what `resolved.scene.output` asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Truth {
+    /// What the values are.
+    pub kind: TruthKind,
+    /// Values along x.
+    pub width: u32,
+    /// Values along y (of the floor: z).
+    pub height: u32,
+    /// Of a view: the pixel of the first value; else (0, 0).
+    pub first_pixel: [u32; 2],
+    /// Of a view: pixels from one value to the next along both axes; else 1.
+    pub pixel_step: u32,
+    /// Irradiance, W/m², row by row; 0 where `compared` is false.
+    pub irradiance: Vec<[f64; 3]>,
+    /// Whether there is something to compare: false where a pixel sees nothing or a texel of an object's map has no surface.
+    pub compared: Vec<bool>,
+    /// Estimated relative L1 error of `irradiance`, from two independent halves.
+    pub relative_error: f64,
+    /// Rays counted, both halves and all suns.
+    pub rays: u64,
+    /// Share of the light that would reach a value but is stopped by meshes, 0 … 1; `None` when there are none.
+    pub shadow: Option<Vec<f64>>,
+    /// What it took to compute, s.
+    pub seconds: f64,
+    /// Whether it was read from the disk.
+    pub from_disk: bool,
+}
+
+impl Truth {
+    /// Whether each value lies at most `reach` values (along x and y alike) from the edge of a shadow; `None` when no mesh casts
+    /// any. The edge runs between neighbours on both sides of a share of one half, and where the share is neither 0 nor 1.
+    pub fn shadow_edge(&self, reach: u32) -> Option<Vec<bool>> {
+        let shadow = self.shadow.as_ref()?;
+        let (width, height) = (self.width as usize, self.height as usize);
+        let mut edge = vec![false; shadow.len()];
+        for y in 0..height {
+            for x in 0..width {
+                let at = y * width + x;
+                if !self.compared[at] {
+                    continue;
+                }
+                let (low, high) = HALF_DARK;
+                edge[at] |= shadow[at] > low && shadow[at] < high;
+                let right = (x + 1 < width).then_some(at + 1);
+                let below = (y + 1 < height).then_some(at + width);
+                for next in [right, below].into_iter().flatten() {
+                    if self.compared[next] && (shadow[at] > 0.5) != (shadow[next] > 0.5) {
+                        edge[at] = true;
+                        edge[next] = true;
+                    }
+                }
+            }
+        }
+        let reach = reach as usize;
+        // First along x, then along y: a square around each value of the edge.
+        let wide = widen(&edge, reach, |at| (at % width, width), 1);
+        Some(widen(&wide, reach, |at| (at / width, height), width))
+    }
+}
+
+/// True up to `reach` steps of `stride` around every true value; `place_of` tells where along the axis a value lies, and how
+/// long that is.
+fn widen(
+    values: &[bool],
+    reach: usize,
+    place_of: impl Fn(usize) -> (usize, usize),
+    stride: usize,
+) -> Vec<bool> {
+    (0..values.len())
+        .map(|at| {
+            let (place, count) = place_of(at);
+            let before = reach.min(place);
+            let after = reach.min(count - 1 - place);
+            let first = at - before * stride;
+            (0..=before + after).any(|i| values[first + i * stride])
+        })
+        .collect()
+}
+
+/// Finds the truth, or reads it from `settings.disk`.
+///
+/// It is what [`crate::render::Renderer`] should answer for the same scene, found by counting plain rays in f64: texels of maps
+/// are means over the texel; a point of a view is the mean over its pixel's footprint. Dials have no say in it, except that
+/// `quality.level_map_texels` is the size of an object's map. The bits do not depend on the number of threads. `progress` hears
+/// the finished part, 0 … 1, from any thread; `cancelled` is asked often, from any thread.
+///
+/// # Errors
+///
+/// What cannot be counted, settings without sense, and [`ReferenceError::Cancelled`].
+pub fn truth(
+    resolved: &ResolvedScene,
+    settings: &TruthSettings,
+    progress: &(dyn Fn(f64) + Sync),
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Truth, ReferenceError> {
+    settings.check()?;
+    let started = Instant::now();
+    let mut truth = match &resolved.scene.output {
+        Output::View(_) => view::view(resolved, settings, progress, cancelled),
+        Output::IrradianceMap(output) => match output.receiver {
+            Receiver::Floor(_) => floor(resolved, settings, progress, cancelled),
+            Receiver::Object(_) => Err(ReferenceError::NotAFloorMap),
+        },
+    }?;
+    truth.seconds = started.elapsed().as_secs_f64();
+    Ok(truth)
+}
+
+/// The map on the floor: counted suns, and the skies as under flat water.
+fn floor(
+    resolved: &ResolvedScene,
+    settings: &TruthSettings,
+    progress: &(dyn Fn(f64) + Sync),
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Truth, ReferenceError> {
+    let mut suns_only = resolved.clone();
+    let mut sky_w_m2 = [0.0; 3];
+    if let Output::IrradianceMap(output) = &mut suns_only.scene.output
+        && output.include_sky
+    {
+        output.include_sky = false;
+        sky_w_m2 = SceneFacts::of(resolved)
+            .map_err(|error| ReferenceError::Scene(error.to_string()))?
+            .map_sky_w_m2;
+    }
+    let map::CountedMap { map, shadow } =
+        map::count(&suns_only, &settings.counting(), progress, cancelled)?;
+    let mut irradiance = map.irradiance;
+    let total = |values: &[[f64; 3]]| values.as_flattened().iter().sum::<f64>();
+    let suns = total(&irradiance);
+    for texel in &mut irradiance {
+        for (value, sky) in texel.iter_mut().zip(sky_w_m2) {
+            *value += sky;
+        }
+    }
+    let all = total(&irradiance);
+    Ok(Truth {
+        kind: TruthKind::FloorMap,
+        width: map.width,
+        height: map.height,
+        first_pixel: [0, 0],
+        pixel_step: 1,
+        compared: vec![true; irradiance.len()],
+        irradiance,
+        relative_error: if all > 0.0 {
+            map.relative_error * suns / all
+        } else {
+            0.0
+        },
+        rays: map.rays,
+        shadow,
+        seconds: 0.0,
+        from_disk: false,
+    })
+}

@@ -1,0 +1,257 @@
+//! The light at the points that a camera sees.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::camera::{ViewPoint, Viewer};
+use super::map::{MOST_GROWTH, ORDER, half_difference, mean, share};
+use super::patch::{Patch, Search, Sunlight};
+use super::place::Place;
+use super::{ReferenceError, Truth, TruthKind, TruthSettings};
+use crate::scene::{Output, ResolvedScene};
+
+/// Rays per footprint of evenly lit water in the first round, each half.
+const FIRST_POINTS: f64 = 64.0;
+/// Nearer than this a surface does not shade itself in the air, m.
+const OWN_M: f64 = 1e-7;
+
+/// Which pixels are looked at: every `step`th from `first` on, `size` of them along x and y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PixelGrid {
+    first: [u32; 2],
+    step: u32,
+    size: [u32; 2],
+}
+
+impl PixelGrid {
+    /// The finest of at most `most` pixels.
+    fn of(width: u32, height: u32, most: u32) -> Self {
+        let mut step = 1;
+        loop {
+            let first = [width, height].map(|n| (step - 1).min(n - 1) / 2);
+            let size = [
+                (width - first[0]).div_ceil(step),
+                (height - first[1]).div_ceil(step),
+            ];
+            if u64::from(size[0]) * u64::from(size[1]) <= u64::from(most) {
+                return Self { first, step, size };
+            }
+            step += 1;
+        }
+    }
+
+    fn pixels(self) -> impl Iterator<Item = [u32; 2]> {
+        let Self { first, step, size } = self;
+        (0..size[1]).flat_map(move |j| {
+            (0..size[0]).map(move |i| [first[0] + i * step, first[1] + j * step])
+        })
+    }
+}
+
+/// A point and the light on it that needs no counting.
+struct Lit {
+    point: ViewPoint,
+    patch: Patch,
+    /// Skies, and in the air the suns, W/m².
+    known: [f64; 3],
+    /// Of a dry point: what the meshes hold back.
+    stopped: [f64; 3],
+}
+
+/// One round: per point two halves, and the rays counted.
+type Counted = ([Sunlight; 2], u64);
+
+/// The truth at the points that the camera of `resolved` sees.
+pub(super) fn view(
+    resolved: &ResolvedScene,
+    settings: &TruthSettings,
+    progress: &(dyn Fn(f64) + Sync),
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Truth, ReferenceError> {
+    let Output::View(output) = &resolved.scene.output else {
+        return Err(ReferenceError::NoCamera);
+    };
+    let place = Place::of(resolved)?;
+    let grid = PixelGrid::of(
+        output.width.max(1),
+        output.height.max(1),
+        settings.most_points,
+    );
+    let mut viewer = Viewer::of(&place)?;
+    let mut points = Vec::new();
+    for pixel in grid.pixels() {
+        points.push(viewer.look(pixel).map(|point| lit(&place, point)));
+        if cancelled() {
+            return Err(ReferenceError::Cancelled);
+        }
+    }
+    let counted = rounds(&place, &points, settings, progress, cancelled)?;
+    let [a, b] = irradiance_halves(&points, &counted);
+    let shadow = |lit: &Option<Lit>, (halves, _): &Counted| {
+        let Some(lit) = lit else { return 0.0 };
+        let mut both = halves[0];
+        both.add(&halves[1]);
+        if lit.point.dry {
+            // The known light of a dry point has skies in it; what the suns bring alone is asked for again.
+            let open = suns_in_air(&place, &lit.point).lit;
+            return share(lit.stopped.iter().sum(), open.iter().sum());
+        }
+        share(both.stopped.iter().sum(), both.lit.iter().sum())
+    };
+    Ok(Truth {
+        kind: TruthKind::View,
+        width: grid.size[0],
+        height: grid.size[1],
+        first_pixel: grid.first,
+        pixel_step: grid.step,
+        irradiance: mean(&a, &b),
+        compared: points.iter().map(Option::is_some).collect(),
+        relative_error: half_difference(&a, &b),
+        rays: counted.iter().map(|(_, rays)| rays).sum(),
+        shadow: (!place.occluders.is_empty()).then(|| {
+            points
+                .iter()
+                .zip(&counted)
+                .map(|(p, c)| shadow(p, c))
+                .collect()
+        }),
+        seconds: 0.0,
+        from_disk: false,
+    })
+}
+
+fn lit(place: &Place, point: ViewPoint) -> Lit {
+    let mut known = place.sky_w_m2(point.position_m, point.normal, point.dry);
+    let mut stopped = [0.0; 3];
+    if point.dry {
+        let suns = suns_in_air(place, &point);
+        stopped = suns.stopped;
+        for c in 0..3 {
+            known[c] += suns.lit[c];
+        }
+    }
+    Lit {
+        point,
+        patch: Patch::new(point.position_m, point.normal, point.side_m, point.object),
+        known,
+        stopped,
+    }
+}
+
+/// Suns on a point above the water, with exact shadows.
+fn suns_in_air(place: &Place, point: &ViewPoint) -> Sunlight {
+    let mut sum = Sunlight::default();
+    let mut stack = Vec::new();
+    for sun in &place.suns {
+        let cosine = point.normal.dot(sun.to_light);
+        if cosine <= 0.0 {
+            continue;
+        }
+        let from_m: DVec3 = point.position_m + sun.to_light * OWN_M;
+        let blocker = place
+            .occluders
+            .first_seen(from_m, sun.to_light, f64::MAX, &mut stack);
+        let target = if blocker.is_some() {
+            &mut sum.stopped
+        } else {
+            &mut sum.lit
+        };
+        for c in 0..3 {
+            target[c] += sun.irradiance_w_m2[c] * cosine;
+        }
+    }
+    sum
+}
+
+/// Counts all points with ever more rays until they are good enough.
+fn rounds(
+    place: &Place,
+    points: &[Option<Lit>],
+    settings: &TruthSettings,
+    progress: &(dyn Fn(f64) + Sync),
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Vec<Counted>, ReferenceError> {
+    let most = settings.max_rays as f64;
+    let target = settings.target_error.unwrap_or(0.0);
+    let mut per_patch = FIRST_POINTS;
+    let mut last = false;
+    // In points times rays per footprint, before and after the coming round.
+    let mut work = 0.0;
+    loop {
+        let planned = work + per_patch;
+        let done = AtomicU64::new(0);
+        let counted: Vec<Counted> = points
+            .par_iter()
+            .enumerate()
+            .map(|(index, lit)| {
+                let result = match lit {
+                    Some(lit) if !lit.point.dry && !cancelled() => {
+                        count_point(place, &lit.patch, per_patch, index)
+                    }
+                    _ => Counted::default(),
+                };
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                let part = done as f64 / points.len() as f64;
+                if last {
+                    progress(((work + part * per_patch) / planned).min(1.0));
+                }
+                result
+            })
+            .collect();
+        if cancelled() {
+            return Err(ReferenceError::Cancelled);
+        }
+        let [a, b] = irradiance_halves(points, &counted);
+        let error = half_difference(&a, &b);
+        let rays: u64 = counted.iter().map(|(_, rays)| rays).sum();
+        if error <= target || last || rays == 0 {
+            progress(1.0);
+            return Ok(counted);
+        }
+        work += per_patch;
+        let room = most / rays as f64;
+        let wanted = 1.1 * (error / target).powf(1.0 / ORDER);
+        let growth = if target > 0.0 {
+            wanted.clamp(2.0, MOST_GROWTH)
+        } else {
+            room
+        };
+        if room <= 1.5 {
+            progress(1.0);
+            return Ok(counted);
+        }
+        last = growth >= room;
+        per_patch *= growth.min(room);
+    }
+}
+
+/// All suns on one square.
+fn count_point(place: &Place, patch: &Patch, per_patch: f64, index: usize) -> Counted {
+    let mut sum = Counted::default();
+    let mut stack = Vec::new();
+    for (nth, sun) in place.suns.iter().enumerate() {
+        let key = (index * place.suns.len() + nth) as u64;
+        let (halves, rays) = Search::new(place, sun, patch).light(per_patch, key, &mut stack);
+        for (sum, half) in sum.0.iter_mut().zip(&halves) {
+            sum.add(half);
+        }
+        sum.1 += rays;
+    }
+    sum
+}
+
+/// Irradiance per point, half by half; 0 where nothing is seen.
+fn irradiance_halves(points: &[Option<Lit>], counted: &[Counted]) -> [Vec<[f64; 3]>; 2] {
+    [0, 1].map(|half: usize| {
+        points
+            .iter()
+            .zip(counted)
+            .map(|(lit, (halves, _))| match lit {
+                Some(lit) => std::array::from_fn(|c| lit.known[c] + halves[half].lit[c]),
+                None => [0.0; 3],
+            })
+            .collect()
+    })
+}
