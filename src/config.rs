@@ -50,7 +50,12 @@ pub struct RenderConfig {
     #[arg(long, env = "CAUSTICA_CALIBRATION", value_name = "FILE", value_parser = calibration, global = true)]
     pub calibration: Option<Calibration>,
     /// Folder to keep float64 truths in, for studies of accuracy; without it `accuracy` uses the user's caches and a service none.
-    #[arg(long, env = "CAUSTICA_TRUTH_CACHE", value_name = "FOLDER", global = true)]
+    #[arg(
+        long,
+        env = "CAUSTICA_TRUTH_CACHE",
+        value_name = "FOLDER",
+        global = true
+    )]
     pub truth_cache: Option<std::path::PathBuf>,
 }
 

@@ -43,6 +43,9 @@ pub enum StudyError<E: std::error::Error> {
     /// Images cannot be compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
+    /// Every setting was left out.
+    #[error("no setting can be rendered: {0}")]
+    NothingLeft(String),
     /// A render failed for good.
     #[error("{0}")]
     Render(E),
@@ -158,8 +161,15 @@ pub fn run_study<E: std::error::Error>(
                 Err(Refusal::All(error)) => return Err(StudyError::Render(error)),
             }
         }
-        study.sweeps.push(sweep);
-        images.points.push(sweep_images);
+        // A sweep all of whose settings were left out has nothing to show; the warnings say so.
+        if !sweep.points.is_empty() {
+            study.sweeps.push(sweep);
+            images.points.push(sweep_images);
+        }
+    }
+    if study.sweeps.is_empty() {
+        let reasons: Vec<String> = study.warnings.into_iter().map(|w| w.message).collect();
+        return Err(StudyError::NothingLeft(reasons.join("; ")));
     }
     progress(total, total, "done");
     fit_orders(&mut study);
@@ -233,7 +243,6 @@ fn measure<E>(
     estimating.scene.quality.estimate_error = true;
     let frame = render(estimating)?;
     let mut costs = Vec::new();
-    // Once more unmeasured where the first run built pipelines of its own for the estimate.
     let mut plain = scene.clone();
     plain.scene.quality.estimate_error = false;
     for _ in 0..runs.max(1) {
@@ -305,9 +314,8 @@ fn cost_figures(runs: &[Stats]) -> CostFigures {
     };
     let passes = runs.first().map(|stats| &stats.passes);
     let passes = passes.into_iter().flatten().filter_map(|pass| {
-        let ms = spread_of(&|stats: &Stats| {
-            stats.passes.iter().find(|p| p.name == pass.name)?.gpu_ms
-        });
+        let ms =
+            spread_of(&|stats: &Stats| stats.passes.iter().find(|p| p.name == pass.name)?.gpu_ms);
         ms.map(|ms| PassCost {
             name: pass.name.clone(),
             ms,

@@ -82,10 +82,12 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
     let mut renderer = Renderer::new(config)?;
     let never = CancellationToken::new();
     let mut render = |scene: ResolvedScene| {
-        renderer.render(&scene, &never).map_err(|error| match error {
-            RenderError::OverBudget { .. } => Refusal::Setting(error),
-            _ => Refusal::All(error),
-        })
+        renderer
+            .render(&scene, &never)
+            .map_err(|error| match error {
+                RenderError::OverBudget { .. } => Refusal::Setting(error),
+                _ => Refusal::All(error),
+            })
     };
     let name = args.scene.scene.file_stem().map(|s| s.to_string_lossy());
     let name = name.filter(|name| name != "-").unwrap_or_default();
@@ -160,10 +162,16 @@ pub fn in_words(study: &Study) -> String {
         study.truth.rays as f64,
         100.0 * study.truth.relative_error,
         study.truth.seconds,
-        if study.truth.from_disk { " (kept from before)" } else { "" },
+        if study.truth.from_disk {
+            " (kept from before)"
+        } else {
+            ""
+        },
     );
     let mut rows = vec![
-        ["setting", "L1", "estimated", "ms", "peak", ""].map(str::to_owned).to_vec(),
+        ["setting", "L1", "estimated", "ms", "peak", ""]
+            .map(str::to_owned)
+            .to_vec(),
     ];
     for point in study.sweeps.iter().flat_map(|sweep| &sweep.points) {
         let dials: Vec<String> = point

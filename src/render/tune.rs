@@ -7,7 +7,8 @@ use crate::plan::{self, WarmCache};
 use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
 use crate::stats::{ChosenDials, Warning};
-use crate::tuning::{choose, cost, ladder};
+use crate::tuning::choose::{self, Prospect};
+use crate::tuning::{cost, ladder};
 
 /// Cells of the look that tells what error a time budget will buy.
 const BUDGET_LOOK: u32 = 64;
@@ -37,8 +38,14 @@ impl Renderer {
         target: f64,
         cancel: &CancellationToken,
     ) -> Result<ChosenDials, RenderError> {
-        let margin = self.calibration.error_margin;
-        let choice = choose::for_error(target, margin, |cells| self.look(resolved, cells, cancel))?;
+        let prospect = Prospect {
+            most_cells: self.most_cells(resolved)?,
+            margin: self.calibration.error_margin,
+            is_view: resolved.scene.output.is_view(),
+        };
+        let choice = choose::for_error(target, &prospect, |cells| {
+            self.look(resolved, cells, cancel)
+        })?;
         let reason = if choice.meets {
             format!(
                 "{} looks with few cells: the fewest that are predicted to stay under {target}",
@@ -65,12 +72,15 @@ impl Renderer {
         budget_ms: f64,
         cancel: &CancellationToken,
     ) -> Result<ChosenDials, RenderError> {
+        let most = self.most_cells(resolved)?;
         let (cells, meets) =
-            choose::for_time(budget_ms, |cells| self.predicted_ms(resolved, cells))?;
-        let error = self.look(resolved, BUDGET_LOOK, cancel)?.unwrap_or(0.0);
+            choose::for_time(budget_ms, most, |cells| self.predicted_ms(resolved, cells))?;
+        let error = self
+            .look(resolved, BUDGET_LOOK.min(most), cancel)?
+            .unwrap_or(0.0);
         let predicted = error
             * self.calibration.error_margin
-            * (f64::from(BUDGET_LOOK) / f64::from(cells)).powi(2);
+            * (f64::from(BUDGET_LOOK.min(most)) / f64::from(cells)).powi(2);
         let reason = if meets {
             format!("the most cells that are predicted to take at most {budget_ms} ms")
         } else {
@@ -98,6 +108,23 @@ impl Renderer {
             meets,
             reason,
         })
+    }
+
+    /// The most cells whose frame fits the memory.
+    fn most_cells(&self, resolved: &ResolvedScene) -> Result<u32, RenderError> {
+        let (mut low, mut high) = (ladder::FEWEST_CELLS, ladder::MOST_CELLS + 1);
+        while high - low > 1 {
+            let middle = low + (high - low) / 2;
+            let mut rung = with_cells(resolved, middle);
+            rung.scene.quality.estimate_error = true;
+            let facts = SceneFacts::of(&rung)?;
+            match self.check_budget(&plan::plan_scene(&facts, self)?) {
+                Ok(()) => low = middle,
+                Err(RenderError::OverBudget { .. }) => high = middle,
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(low)
     }
 
     /// What a warm frame with so many cells will take, ms.

@@ -4,10 +4,14 @@ use super::ladder::{FEWEST_CELLS, MOST_CELLS};
 
 /// Cells of the first look.
 const FIRST_LOOK: u32 = 64;
+/// Order at which a map's error falls with the cells: measured on every scene of docs/accuracy.md.
+const MAP_ORDER: f64 = 2.0;
+/// Least and largest order that is believed of a view: its map's texels blur, and what they blur is sharp.
+const VIEW_ORDER: (f64, f64) = (0.5, 2.0);
 /// Times the cells of a look beyond which its error is not extrapolated: another look comes first.
 const FARTHEST: f64 = 2.5;
 /// Looks at most.
-const MOST_LOOKS: u32 = 4;
+const MOST_LOOKS: u32 = 5;
 /// Share of a time budget that predictions are held to: they scatter.
 const BUDGET_SHARE: f64 = 0.8;
 
@@ -24,24 +28,42 @@ pub struct Choice {
     pub looks: u32,
 }
 
+/// What is known of a scene before any look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prospect {
+    /// Most cells that fit the memory.
+    pub most_cells: u32,
+    /// How much larger than its estimate a true error may be, 1 …
+    pub margin: f64,
+    /// Whether a camera looks at the map: how fast its error falls is then measured, from look to look. A map's own texels fall
+    /// with the square of the cells, which is known.
+    pub is_view: bool,
+}
+
 /// The fewest cells that are predicted to stay under `target`.
 ///
-/// `look` renders the light with so many cells and returns its estimate of its own error, `None` where no light lands; `margin`
-/// (1 …) is how much larger the true error may be. The error falls with the square of the cells (measured, see docs/accuracy.md),
-/// so from one look the rest follows, but not far: a look with too few cells knows nothing of the finer waves.
+/// `look` renders the light with so many cells and returns its estimate of its own error, `None` where no light lands. From a look
+/// the rest follows, but not far: few cells know nothing of the finer waves.
 ///
 /// # Errors
 /// Those of `look`.
 pub fn for_error<E>(
     target: f64,
-    margin: f64,
+    prospect: &Prospect,
     mut look: impl FnMut(u32) -> Result<Option<f64>, E>,
 ) -> Result<Choice, E> {
-    let mut cells = FIRST_LOOK;
+    let most = prospect.most_cells.clamp(FEWEST_CELLS, MOST_CELLS);
+    let mut cells = FIRST_LOOK.min(most);
+    let mut order = if prospect.is_view {
+        VIEW_ORDER.1
+    } else {
+        MAP_ORDER
+    };
+    let mut before: Option<(u32, f64)> = None;
     let mut looks = 0;
     loop {
         looks += 1;
-        let Some(error) = look(cells)?.map(|error| error * margin) else {
+        let Some(error) = look(cells)?.map(|error| error * prospect.margin) else {
             return Ok(Choice {
                 cells: FEWEST_CELLS,
                 predicted_error: 0.0,
@@ -49,35 +71,41 @@ pub fn for_error<E>(
                 looks,
             });
         };
-        let needed = (f64::from(cells) * (error / target).sqrt()).ceil();
-        let far = needed > FARTHEST * f64::from(cells);
-        if far && looks < MOST_LOOKS && cells < MOST_CELLS / 2 {
-            cells = ((needed / 2.0) as u32).clamp(2 * cells, MOST_CELLS / 2);
-            continue;
+        if let (true, Some((cells_before, error_before))) = (prospect.is_view, before) {
+            let finer = (f64::from(cells) / f64::from(cells_before)).ln();
+            order = ((error_before / error).ln() / finer).clamp(VIEW_ORDER.0, VIEW_ORDER.1);
         }
-        let chosen = needed.clamp(f64::from(FEWEST_CELLS), f64::from(MOST_CELLS)) as u32;
-        return Ok(Choice {
-            cells: chosen,
-            predicted_error: error * (f64::from(cells) / f64::from(chosen)).powi(2),
-            meets: needed <= f64::from(MOST_CELLS),
-            looks,
-        });
+        let needed = (f64::from(cells) * (error / target).powf(1.0 / order)).ceil();
+        let known = !prospect.is_view || looks > 1 || needed <= f64::from(cells);
+        let near = needed <= FARTHEST * f64::from(cells);
+        if (known && near) || looks == MOST_LOOKS || 2 * cells > most {
+            let chosen = needed.clamp(f64::from(FEWEST_CELLS), f64::from(most)) as u32;
+            return Ok(Choice {
+                cells: chosen,
+                predicted_error: error * (f64::from(cells) / f64::from(chosen)).powf(order),
+                meets: needed <= f64::from(most),
+                looks,
+            });
+        }
+        before = Some((cells, error));
+        cells = ((needed / 2.0) as u32).max(2 * cells).min(most);
     }
 }
 
-/// The most cells that are predicted to stay under `budget_ms`; `predict` gives the ms of a frame with so many cells.
+/// The most cells, at most `most_cells`, that are predicted to stay under `budget_ms`, and whether they do; `predict` gives the ms of a frame with so many cells.
 ///
 /// # Errors
 /// Those of `predict`.
 pub fn for_time<E>(
     budget_ms: f64,
+    most_cells: u32,
     mut predict: impl FnMut(u32) -> Result<f64, E>,
 ) -> Result<(u32, bool), E> {
     let allowed_ms = budget_ms * BUDGET_SHARE;
     if predict(FEWEST_CELLS)? > allowed_ms {
         return Ok((FEWEST_CELLS, false));
     }
-    let (mut low, mut high) = (FEWEST_CELLS, MOST_CELLS + 1);
+    let (mut low, mut high) = (FEWEST_CELLS, most_cells.clamp(FEWEST_CELLS, MOST_CELLS) + 1);
     while high - low > 1 {
         let middle = low + (high - low) / 2;
         if predict(middle)? <= allowed_ms {

@@ -131,14 +131,27 @@ fn margin<E: std::error::Error>(
 /// Scenes whose passes are timed: each driver of [`work`] varies.
 fn timed_scenes() -> Vec<Value> {
     let mut all = Vec::new();
-    for (cells, texels) in [(32, 64), (32, 256), (128, 256), (256, 512), (512, 256), (1024, 256)] {
+    for (cells, texels) in [
+        (32, 64),
+        (32, 256),
+        (128, 256),
+        (256, 512),
+        (512, 256),
+        (1024, 256),
+    ] {
         let mut value = scene_value(SINE_POOL);
         value["quality"] = json!({ "water_cells": cells, "estimate_error": true });
         value["output"]["width"] = json!(texels);
         value["output"]["height"] = json!(texels);
         all.push(value);
     }
-    for (boxes, cells, levels) in [(1, 64, 2), (1, 256, 4), (4, 128, 4), (9, 256, 5), (9, 512, 4)] {
+    for (boxes, cells, levels) in [
+        (1, 64, 2),
+        (1, 256, 4),
+        (4, 128, 4),
+        (9, 256, 5),
+        (9, 512, 4),
+    ] {
         let mut value = scene_value(SINE_POOL);
         value["quality"] = json!({ "water_cells": cells, "split_levels": levels });
         let objects = (0..boxes).map(|i| {

@@ -84,8 +84,8 @@ pub struct AccuracyAnswer {
     pub study: Study,
     /// Error against time (SVG).
     pub error_against_time_svg: String,
-    /// Convergence of each sweep over one number (SVG), in the order of the sweeps; null where there is none.
-    pub convergence_svg: Vec<Option<String>>,
+    /// Convergence of each sweep (SVG), in the order of the sweeps.
+    pub convergence_svg: Vec<String>,
     /// Renders, truth and errors side by side for each sweep (PNG, base64), in the order of the sweeps.
     pub error_images_base64: Vec<String>,
 }
@@ -118,8 +118,7 @@ pub async fn accuracy(
 ) -> Result<Response, ApiError> {
     let media_type = accept::best(&headers, &OFFERED)?;
     let reading = state.clone();
-    let (resolved, settings, truth_error) =
-        run_blocking(move || read(&body, &reading)).await?;
+    let (resolved, settings, truth_error) = run_blocking(move || read(&body, &reading)).await?;
     state.require_trusted_device()?;
     let _place = Arc::clone(state.studies())
         .try_acquire_owned()
@@ -129,7 +128,15 @@ pub async fn accuracy(
     let guard = cancel.clone().drop_guard();
     let handle = Handle::current();
     let answer = run_blocking(move || {
-        let found = study(&state, &resolved, &settings, truth_error, &cancel, &handle, arrival)?;
+        let found = study(
+            &state,
+            &resolved,
+            &settings,
+            truth_error,
+            &cancel,
+            &handle,
+            arrival,
+        )?;
         respond(media_type, &found.0, &found.1)
     })
     .await;
@@ -139,16 +146,25 @@ pub async fn accuracy(
 
 /// Body to scene, sweep and the truth's error.
 fn read(body: &Bytes, state: &AppState) -> Result<(ResolvedScene, SweepSettings, f64), ApiError> {
-    let request: AccuracyRequest =
-        from_value(&read_json(body)?).map_err(|issue| SceneError { issues: vec![issue] })?;
+    let request: AccuracyRequest = from_value(&read_json(body)?).map_err(|issue| SceneError {
+        issues: vec![issue],
+    })?;
     let mut issues = Vec::new();
     if !(1..=MOST_RUNS).contains(&request.runs) {
         let detail = format!("{} is out of range", request.runs);
-        issues.push(Issue::invalid("/runs", detail, format!("an integer, 1 … {MOST_RUNS}")));
+        issues.push(Issue::invalid(
+            "/runs",
+            detail,
+            format!("an integer, 1 … {MOST_RUNS}"),
+        ));
     }
     if !(1e-6..=0.1).contains(&request.truth_error) {
         let detail = format!("{} is out of range", request.truth_error);
-        issues.push(Issue::invalid("/truth_error", detail, "a number, 0.000001 … 0.1"));
+        issues.push(Issue::invalid(
+            "/truth_error",
+            detail,
+            "a number, 0.000001 … 0.1",
+        ));
     }
     let mut dials = Vec::new();
     for (name, values) in &request.dials {
@@ -206,12 +222,13 @@ fn study(
         disk: state.truth_cache().cloned(),
         ..TruthSettings::default()
     };
-    let truth = truth(resolved, &truth_settings, &|_| {}, &|| cancel.is_cancelled()).map_err(
-        |error| match error {
-            ReferenceError::Cancelled => JobError::Cancelled.into(),
-            other => ApiError::NoTruth(other.to_string()),
-        },
-    )?;
+    let truth = truth(resolved, &truth_settings, &|_| {}, &|| {
+        cancel.is_cancelled()
+    })
+    .map_err(|error| match error {
+        ReferenceError::Cancelled => JobError::Cancelled.into(),
+        other => ApiError::NoTruth(other.to_string()),
+    })?;
     let mut render = |scene: ResolvedScene| {
         handle
             .block_on(state.queue().render(scene, arrival))
@@ -237,14 +254,22 @@ fn study(
         }
         .into(),
         StudyError::TooMany(_) => SceneError {
-            issues: vec![Issue::invalid("/dials", error.to_string(), "at most 64 settings")],
+            issues: vec![Issue::invalid(
+                "/dials",
+                error.to_string(),
+                "at most 64 settings",
+            )],
         }
         .into(),
-        StudyError::Metric(error) => ApiError::NoTruth(error.to_string()),
+        StudyError::Metric(_) | StudyError::NothingLeft(_) => ApiError::NoTruth(error.to_string()),
     })
 }
 
-fn respond(media_type: &'static str, study: &Study, images: &StudyImages) -> Result<Response, ApiError> {
+fn respond(
+    media_type: &'static str,
+    study: &Study,
+    images: &StudyImages,
+) -> Result<Response, ApiError> {
     let defect = |error: &dyn std::fmt::Display| ApiError::Panic(error.to_string());
     let typed = |body: String| ([(header::CONTENT_TYPE, media_type)], body).into_response();
     Ok(match media_type {
@@ -264,7 +289,7 @@ fn respond(media_type: &'static str, study: &Study, images: &StudyImages) -> Res
             };
             for sweep in 0..study.sweeps.len() {
                 let plot = convergence(study, sweep).map_err(|e| defect(&e))?;
-                answer.convergence_svg.push(plot.map(|plot| plot.svg));
+                answer.convergence_svg.push(plot.svg);
                 let sheet = contact_sheet(study, images, sweep).map_err(|e| defect(&e))?;
                 answer.error_images_base64.push(STANDARD.encode(sheet));
             }
