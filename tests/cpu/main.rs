@@ -25,6 +25,7 @@ mod project;
 mod reference;
 mod reference_closed_form;
 mod reference_errors;
+mod reference_lens;
 mod reference_meshes;
 mod scene_facts;
 #[path = "../support/scene_files.rs"]
@@ -39,4 +40,6 @@ mod shader_constants;
 mod shaders;
 mod teapot;
 mod tone;
+mod truth;
+mod truth_disk;
 mod waves;
