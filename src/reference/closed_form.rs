@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+pub use super::paraboloid::ParaboloidBump;
 use crate::physics::attenuation::transmission;
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::scene::{Sun, Water};

@@ -3,26 +3,31 @@
 //! Nothing here is a port of a shader. The renderer carries flux in beams with exact coverage on a water grid; the reference
 //! refracts single rays and counts where they land. Both read the same scene, nothing else is shared.
 //!
+//! - `truth`: one entry for every kind of output, and what it answers; `disk` keeps the answers;
 //! - `settings`: how long to count, and why a scene cannot be counted;
+//! - `place`: a scene in local coordinates, and where a ray meets the water;
 //! - `window`: the piece of water that can light a map;
-//! - `lattice`: where the rays start;
+//! - `lattice`: where the rays start; `slanted`: the same in cells that fit a tilted receiver;
 //! - `refract`: many rays at once through the surface;
-//! - `occluders`: the first triangle a ray meets;
-//! - `floor`: the texels rays are counted in;
-//! - `tally`: what a batch of rays brought, term by term;
-//! - `trace`: one sun, one lattice, all rays;
-//! - `map`: rounds of ever finer lattices until the map is good enough;
-//! - `closed_form`: scenes with a formula instead of rays.
+//! - `occluders`: the triangles a ray meets;
+//! - floor maps: `floor`, the texels rays are counted in; `tally`, what a batch of rays brought, term by term; `trace`, one sun,
+//!   one lattice, all rays; `map`, rounds of ever finer lattices until the map is good enough;
+//! - maps on objects: `object_map`;
+//! - views: `camera`, the points that pixels show; `patch`, the light on one of them, searched from there; `view`, all of them;
+//! - `closed_form` and `paraboloid`: scenes with a formula instead of rays.
 //!
 //! Model: suns are points at infinity; waves do not shade each other and light that a surface reflects is not followed;
 //! objects stop light under the water only, not on its way to the water; light that is refracted upwards is lost.
 
 mod camera;
 pub mod closed_form;
+mod disk;
 mod floor;
 mod lattice;
 mod map;
+mod object_map;
 mod occluders;
+mod paraboloid;
 mod patch;
 mod place;
 mod refract;

@@ -175,6 +175,28 @@ impl Occluders {
         until_m: f64,
         stack: &mut Vec<usize>,
     ) -> Option<Seen> {
+        self.first_of(None, from_m, direction, until_m, stack)
+    }
+
+    /// The same for one object alone, however far away.
+    pub(super) fn first_seen_of(
+        &self,
+        object: usize,
+        from_m: DVec3,
+        direction: DVec3,
+        stack: &mut Vec<usize>,
+    ) -> Option<Seen> {
+        self.first_of(Some(object), from_m, direction, f64::MAX, stack)
+    }
+
+    fn first_of(
+        &self,
+        only: Option<usize>,
+        from_m: DVec3,
+        direction: DVec3,
+        until_m: f64,
+        stack: &mut Vec<usize>,
+    ) -> Option<Seen> {
         let mut best: Option<Seen> = None;
         self.walk(
             from_m,
@@ -182,7 +204,7 @@ impl Occluders {
             until_m,
             stack,
             |triangle, [t, u, v], until| {
-                if t < until {
+                if t < until && only.is_none_or(|only| only == triangle.object) {
                     best = Some(Seen {
                         distance_m: t,
                         object: triangle.object,

@@ -83,11 +83,6 @@ impl Patch {
         }
     }
 
-    /// Middle of the square.
-    pub(super) fn center_m(&self) -> DVec3 {
-        self.center_m
-    }
-
     fn bounds(&self) -> Target {
         let reach_m = (self.across[0].abs() + self.across[1].abs()) * self.half_m;
         Target {

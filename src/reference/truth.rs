@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
-use super::{ReferenceError, TruthSettings, map, view};
+use serde::{Deserialize, Serialize};
+
+use super::{ReferenceError, TruthSettings, disk, map, object_map, view};
 use crate::scene::facts::SceneFacts;
 use crate::scene::{Output, Receiver, ResolvedScene};
 
@@ -10,7 +12,7 @@ use crate::scene::{Output, Receiver, ResolvedScene};
 const HALF_DARK: (f64, f64) = (0.02, 0.98);
 
 /// What the values of a [`Truth`] are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TruthKind {
     /// Texels of a map on the floor.
     FloorMap,
@@ -117,15 +119,34 @@ pub fn truth(
     cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Result<Truth, ReferenceError> {
     settings.check()?;
+    let kept = settings
+        .disk
+        .as_ref()
+        .map(|folder| disk::Shelf::of(resolved, settings, folder));
+    if let Some(truth) = kept.as_ref().and_then(|shelf| shelf.read(settings)) {
+        progress(1.0);
+        return Ok(truth);
+    }
     let started = Instant::now();
     let mut truth = match &resolved.scene.output {
         Output::View(_) => view::view(resolved, settings, progress, cancelled),
         Output::IrradianceMap(output) => match output.receiver {
             Receiver::Floor(_) => floor(resolved, settings, progress, cancelled),
-            Receiver::Object(_) => Err(ReferenceError::NotAFloorMap),
+            Receiver::Object(index) => {
+                object_map::object_map(resolved, index, settings, progress, cancelled)
+            }
         },
     }?;
     truth.seconds = started.elapsed().as_secs_f64();
+    if let Some(shelf) = kept
+        && let Err(error) = shelf.write(&truth)
+    {
+        // A truth that cannot be kept is as true; the next run has to find it again.
+        tracing::warn!(
+            "the truth could not be kept in {}: {error}",
+            shelf.file().display()
+        );
+    }
     Ok(truth)
 }
 

@@ -27,6 +27,7 @@ mod project;
 mod reference;
 mod reference_closed_form;
 mod reference_errors;
+mod reference_lens;
 mod reference_meshes;
 mod scene_facts;
 #[path = "../support/scene_files.rs"]
@@ -43,4 +44,6 @@ mod shaders;
 mod synthetic_study;
 mod teapot;
 mod tone;
+mod truth;
+mod truth_disk;
 mod waves;

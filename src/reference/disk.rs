@@ -1,0 +1,218 @@
+//! Truths kept from one run to the next, one file each.
+//!
+//! A file is `MAGIC`, the length of a JSON text as u32, that text (everything but the values), the values as f64 and flags as
+//! bytes, all little-endian, and a blake3 hash of what comes before. It is named by a hash of what the truth depends on. A file
+//! that is damaged, cut short or of another program is as good as none.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use serde::{Deserialize, Serialize};
+
+use super::{Truth, TruthKind, TruthSettings};
+use crate::scene::{ImageFormat, Output, Quality, Receiver, ResolvedScene, ToneCurve, ViewOutput};
+
+/// First bytes of a file; the digit is the format's number.
+const MAGIC: &[u8; 16] = b"caustica truth 1";
+/// Changes when the reference answers differently to the same question.
+const ENGINE: u32 = 1;
+/// Bytes of the hash at the end.
+const HASH_BYTES: usize = 32;
+
+/// All of a [`Truth`] but its values.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    key: String,
+    kind: TruthKind,
+    width: u32,
+    height: u32,
+    first_pixel: [u32; 2],
+    pixel_step: u32,
+    relative_error: f64,
+    rays: u64,
+    seconds: f64,
+    has_shadow: bool,
+    /// Rays it stopped at; 0 when it stopped because it was good enough.
+    limit_rays: u64,
+}
+
+/// Where one truth is kept.
+pub(super) struct Shelf {
+    folder: PathBuf,
+    key: String,
+    /// Target and limit of whoever asks.
+    limits: (Option<f64>, u64),
+}
+
+impl Shelf {
+    /// For what `settings` ask about `resolved`.
+    pub(super) fn of(resolved: &ResolvedScene, settings: &TruthSettings, folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            key: key(resolved, settings),
+            limits: (settings.target_error, settings.max_rays),
+        }
+    }
+
+    pub(super) fn file(&self) -> PathBuf {
+        self.folder.join(format!("{}.truth", self.key))
+    }
+
+    /// The truth that lies there, if it is whole and as good as `settings` ask.
+    pub(super) fn read(&self, settings: &TruthSettings) -> Option<Truth> {
+        let (head, truth) = decode(&std::fs::read(self.file()).ok()?, &self.key)?;
+        let reached = settings
+            .target_error
+            .is_some_and(|target| truth.relative_error <= target);
+        // A truth that stopped at its limit of rays serves whoever allows no more.
+        (reached || head.limit_rays >= settings.max_rays).then_some(truth)
+    }
+
+    /// Writes a whole file or none.
+    pub(super) fn write(&self, truth: &Truth) -> std::io::Result<()> {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        std::fs::create_dir_all(&self.folder)?;
+        let bytes = self.encode(truth)?;
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let temporary =
+            self.folder
+                .join(format!("{}.{}.{number}.part", self.key, std::process::id()));
+        let written = std::fs::File::create(&temporary)
+            .and_then(|mut file| file.write_all(&bytes).and_then(|()| file.sync_all()))
+            .and_then(|()| std::fs::rename(&temporary, self.file()));
+        if written.is_err() {
+            // The first error is the one to tell; a left-over part is never read.
+            std::fs::remove_file(&temporary).ok();
+        }
+        written
+    }
+
+    fn encode(&self, truth: &Truth) -> std::io::Result<Vec<u8>> {
+        let head = serde_json::to_vec(&Head {
+            key: self.key.clone(),
+            kind: truth.kind,
+            width: truth.width,
+            height: truth.height,
+            first_pixel: truth.first_pixel,
+            pixel_step: truth.pixel_step,
+            relative_error: truth.relative_error,
+            rays: truth.rays,
+            seconds: truth.seconds,
+            has_shadow: truth.shadow.is_some(),
+            limit_rays: match self.limits {
+                (Some(target), _) if truth.relative_error <= target => 0,
+                (_, max_rays) => max_rays,
+            },
+        })?;
+        let length = u32::try_from(head.len()).map_err(std::io::Error::other)?;
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(length.to_le_bytes());
+        bytes.extend(head);
+        for value in truth.irradiance.as_flattened() {
+            bytes.extend(value.to_le_bytes());
+        }
+        bytes.extend(truth.compared.iter().map(|&compared| u8::from(compared)));
+        for value in truth.shadow.iter().flatten() {
+            bytes.extend(value.to_le_bytes());
+        }
+        let hash = blake3::hash(&bytes);
+        bytes.extend(hash.as_bytes());
+        Ok(bytes)
+    }
+}
+
+/// A hash of all that the answer depends on: the scene without dials and dressing, how many points, and the program.
+fn key(resolved: &ResolvedScene, settings: &TruthSettings) -> String {
+    let mut scene = resolved.scene.clone();
+    let level_map_texels = scene.quality.level_map_texels;
+    scene.quality = Quality::default();
+    let mut most_points = 0;
+    match &mut scene.output {
+        Output::View(output) => {
+            most_points = settings.most_points;
+            *output = ViewOutput {
+                width: output.width,
+                height: output.height,
+                ..ViewOutput::default()
+            };
+        }
+        Output::IrradianceMap(output) => {
+            output.format = ImageFormat::Exr;
+            output.png_bits = 8;
+            output.exposure_ev = 0.0;
+            output.tone_curve = ToneCurve::default();
+            if matches!(output.receiver, Receiver::Object(_)) {
+                scene.quality.level_map_texels = level_map_texels;
+            }
+        }
+    }
+    let scene = ResolvedScene {
+        scene,
+        meshes: resolved.meshes.clone(),
+    };
+    let mut hasher = blake3::Hasher::new();
+    // Lengths first, so that no two questions run into the same bytes.
+    for part in [scene.hash().as_str(), env!("CARGO_PKG_VERSION")] {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part.as_bytes());
+    }
+    hasher.update(&ENGINE.to_le_bytes());
+    hasher.update(&most_points.to_le_bytes());
+    hasher.finalize().to_hex().to_string()
+}
+
+/// What `bytes` hold, if they are whole and answer `key`.
+fn decode(bytes: &[u8], key: &str) -> Option<(Head, Truth)> {
+    let (body, hash) = bytes.split_at_checked(bytes.len().checked_sub(HASH_BYTES)?)?;
+    if blake3::hash(body).as_bytes() != hash {
+        return None;
+    }
+    let rest = body.strip_prefix(MAGIC)?;
+    let (length, rest) = rest.split_at_checked(4)?;
+    let length = u32::from_le_bytes(length.try_into().ok()?);
+    let (head, rest) = rest.split_at_checked(length as usize)?;
+    let head: Head = serde_json::from_slice(head).ok()?;
+    if head.key != key {
+        return None;
+    }
+    let count = (head.width as usize).checked_mul(head.height as usize)?;
+    let (irradiance, rest) = rest.split_at_checked(count.checked_mul(24)?)?;
+    let (compared, rest) = rest.split_at_checked(count)?;
+    if rest.len()
+        != if head.has_shadow {
+            count.checked_mul(8)?
+        } else {
+            0
+        }
+    {
+        return None;
+    }
+    let irradiance = numbers(irradiance);
+    let shadow = head.has_shadow.then(|| numbers(rest));
+    let truth = Truth {
+        kind: head.kind,
+        width: head.width,
+        height: head.height,
+        first_pixel: head.first_pixel,
+        pixel_step: head.pixel_step,
+        irradiance: irradiance.as_chunks().0.to_vec(),
+        compared: compared.iter().map(|&byte| byte != 0).collect(),
+        relative_error: head.relative_error,
+        rays: head.rays,
+        shadow,
+        seconds: head.seconds,
+        from_disk: true,
+    };
+    let finite = truth
+        .irradiance
+        .as_flattened()
+        .iter()
+        .all(|v| v.is_finite());
+    finite.then_some((head, truth))
+}
+
+fn numbers(bytes: &[u8]) -> Vec<f64> {
+    let (numbers, _) = bytes.as_chunks::<8>();
+    numbers.iter().map(|&n| f64::from_le_bytes(n)).collect()
+}

@@ -1,0 +1,367 @@
+//! The light on an object, in the texels of the map that its level map spans.
+//!
+//! Plain rays go down all over the water that can light the object. Those that strike its first surface along the map's axis
+//! are counted in the texel they strike; the cells of the lattice are the texels' shadows on the water, so flat water gives
+//! every texel the same count.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::{DVec2, DVec3, DVec4};
+use rayon::prelude::*;
+
+use super::lattice::Lattice;
+use super::map::{MOST_GROWTH, ORDER, half_difference, mean, share};
+use super::place::{Place, PlacedSun};
+use super::refract::{BLOCK, Block, RowRefractor};
+use super::slanted::{Cells, halves, rows};
+use super::tally::add_to;
+use super::window::{LightWindow, window_of};
+use super::{ReferenceError, Truth, TruthKind, TruthSettings};
+use crate::physics::attenuation::transmission;
+use crate::scene::ResolvedScene;
+use crate::scene::placement::LevelBox;
+
+/// Rays per texel of evenly lit water in the first round, each half.
+const FIRST_POINTS: f64 = 8.0;
+/// Bands of rows; each has its own map until they are added up in order.
+const BANDS: usize = 8;
+/// Nearer along the axis than this share of the object's size a surface does not hide another: rounding.
+const SAME_SURFACE: f64 = 1e-7;
+
+/// Landed and stopped light per texel: (r, g, b) and the same again, m² times W/m² of the sun.
+type Texels = Vec<[f64; 6]>;
+
+/// The truth about the map on object `index`.
+pub(super) fn object_map(
+    resolved: &ResolvedScene,
+    index: u32,
+    settings: &TruthSettings,
+    progress: &(dyn Fn(f64) + Sync),
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Truth, ReferenceError> {
+    let place = Place::of(resolved)?;
+    let object = index as usize;
+    if object >= place.occluders.bounds.len() {
+        return Err(ReferenceError::NoObject {
+            index,
+            objects: place.occluders.bounds.len(),
+        });
+    }
+    let side = resolved.scene.quality.level_map_texels;
+    let (Some(sun), true) = (place.suns.first(), place.facts.objects[object].wet) else {
+        progress(1.0);
+        return Ok(dark(side));
+    };
+    let level_box = LevelBox::new(
+        &place.facts.objects[object],
+        &resolved.meshes[object],
+        sun.flat,
+        side,
+    );
+    let counter = Counter::new(&place, sun, &level_box, object);
+    let cosines = counter.cosines(side);
+    let (halves, rays) = counter.rounds(&cosines, settings, progress, cancelled)?;
+    let [a, b] = &halves;
+    let irradiance = [a, b].map(|half| counter.irradiance(half, &cosines));
+    Ok(Truth {
+        relative_error: half_difference(&irradiance[0], &irradiance[1]),
+        irradiance: mean(&irradiance[0], &irradiance[1]),
+        compared: cosines.iter().map(Option::is_some).collect(),
+        rays,
+        shadow: Some(shadow(a, b, &cosines)),
+        ..dark(side)
+    })
+}
+
+/// A map that no light reaches; without a sun there is no axis to look along, and nothing to compare.
+fn dark(side: u32) -> Truth {
+    let texels = side as usize * side as usize;
+    Truth {
+        kind: TruthKind::ObjectMap,
+        width: side,
+        height: side,
+        first_pixel: [0, 0],
+        pixel_step: 1,
+        irradiance: vec![[0.0; 3]; texels],
+        compared: vec![false; texels],
+        relative_error: 0.0,
+        rays: 0,
+        shadow: None,
+        seconds: 0.0,
+        from_disk: false,
+    }
+}
+
+fn shadow(a: &Texels, b: &Texels, cosines: &[Option<f64>]) -> Vec<f64> {
+    a.iter()
+        .zip(b)
+        .zip(cosines)
+        .map(|((a, b), cosine)| {
+            let sum = |of: std::ops::Range<usize>| of.map(|i| a[i] + b[i]).sum();
+            cosine.map_or(0.0, |_| share(sum(3..6), sum(0..3)))
+        })
+        .collect()
+}
+
+struct Counter<'a> {
+    place: &'a Place,
+    sun: &'a PlacedSun,
+    level_box: &'a LevelBox,
+    object: usize,
+    /// Where (u, v, s) is (0, 0, 0), local, m.
+    corner_m: DVec3,
+    /// From a texel to the next along u and v, m.
+    edges_m: [DVec3; 2],
+    cells: Cells,
+    /// Rectangle of (s, t) that holds all water whose light can reach the object.
+    part: LightWindow,
+    /// A plane below the object, where rays end that miss it, m below the water at rest.
+    end_m: f64,
+    same_surface_m: f64,
+}
+
+impl<'a> Counter<'a> {
+    fn new(place: &'a Place, sun: &'a PlacedSun, level_box: &'a LevelBox, object: usize) -> Self {
+        let facts = &place.facts;
+        let bounds = place.occluders.bounds[object];
+        let size_m = (bounds.max_m - bounds.min_m).length();
+        let window = window_of(&facts.surface, sun.to_light, facts.ior, &[bounds]);
+        // A texel's edges across the axis: the columns of the inverse of the map's rows.
+        let rows = level_box.map_from_local.map(DVec4::truncate);
+        let [u_m, v_m] = [
+            rows[1].cross(rows[2]) / rows[0].dot(rows[1].cross(rows[2])),
+            rows[2].cross(rows[0]) / rows[1].dot(rows[2].cross(rows[0])),
+        ];
+        let corner = -DVec3::new(
+            level_box.map_from_local[0].w,
+            level_box.map_from_local[1].w,
+            level_box.map_from_local[2].w,
+        );
+        let along_m = level_box.axis / level_box.s_per_m;
+        let corner_m = u_m * corner.x + v_m * corner.y + along_m * corner.z;
+        let cells = Cells::of(corner_m, u_m, v_m, level_box.axis);
+        Self {
+            place,
+            sun,
+            level_box,
+            object,
+            corner_m,
+            edges_m: [u_m, v_m],
+            part: cells.around(&window),
+            cells,
+            end_m: -(bounds.min_m.y - 1e-3 * size_m),
+            same_surface_m: SAME_SURFACE * size_m,
+        }
+    }
+
+    /// (u, v, s) of a local point.
+    fn to_map(&self, p_m: DVec3) -> DVec3 {
+        let [u, v, s] = self
+            .level_box
+            .map_from_local
+            .map(|row| row.dot(p_m.extend(1.0)));
+        DVec3::new(u, v, s)
+    }
+
+    /// |n·axis| of the first surface seen along the axis at each texel's centre.
+    fn cosines(&self, side: u32) -> Vec<Option<f64>> {
+        let axis = self.level_box.axis;
+        let bounds = self.place.occluders.bounds[self.object];
+        let size_m = (bounds.max_m - bounds.min_m).length();
+        let middle_m = (bounds.min_m + bounds.max_m) * 0.5;
+        (0..side * side)
+            .into_par_iter()
+            .map(|texel| {
+                let st = DVec2::new(f64::from(texel % side), f64::from(texel / side)) + 0.5;
+                let texel_m = self.corner_m + self.edges_m[0] * st.x + self.edges_m[1] * st.y;
+                let before_m = (middle_m - texel_m).dot(axis) - size_m;
+                let mut stack = Vec::new();
+                self.place
+                    .occluders
+                    .first_seen_of(self.object, texel_m + axis * before_m, axis, &mut stack)
+                    .map(|seen| seen.normal.dot(axis).abs())
+            })
+            .collect()
+    }
+
+    /// Both halves of the last round, and its rays.
+    fn rounds(
+        &self,
+        cosines: &[Option<f64>],
+        settings: &TruthSettings,
+        progress: &(dyn Fn(f64) + Sync),
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Result<([Texels; 2], u64), ReferenceError> {
+        let size = self.part.max_m - self.part.min_m;
+        if !size.is_finite() {
+            return Ok(([(); 2].map(|()| vec![[0.0; 6]; cosines.len()]), 0));
+        }
+        let most = (settings.max_rays as f64 / (2.0 * size.element_product())).max(1e-6);
+        let target = settings.target_error.unwrap_or(0.0);
+        let mut points = match settings.target_error {
+            Some(_) => FIRST_POINTS.min(most),
+            None => most,
+        };
+        let mut first = true;
+        loop {
+            let planned = 2.0 * points * size.element_product();
+            let counted = AtomicU64::new(0);
+            let mut rays = 0;
+            let both = halves(points, self.object as u64).map(|lattice| {
+                let texels = self.count(&lattice, cosines.len(), cancelled, &|more| {
+                    let done = counted.fetch_add(more, Ordering::Relaxed) + more;
+                    if !first || points >= most {
+                        progress((done as f64 / planned).min(1.0));
+                    }
+                });
+                rays = counted.load(Ordering::Relaxed);
+                texels
+            });
+            if cancelled() {
+                return Err(ReferenceError::Cancelled);
+            }
+            first = false;
+            let [a, b] = [0, 1].map(|half: usize| self.irradiance(&both[half], cosines));
+            let error = half_difference(&a, &b);
+            if error <= target || points >= most {
+                progress(1.0);
+                return Ok((both, rays));
+            }
+            let growth = 1.1 * (error / target).powf(1.0 / ORDER);
+            points = (points * growth.clamp(2.0, MOST_GROWTH)).min(most);
+        }
+    }
+
+    /// Sends every ray of `lattice`; m² of flux per unit irradiance become W when the sun's comes in.
+    fn count(
+        &self,
+        lattice: &Lattice,
+        texels: usize,
+        cancelled: &(dyn Fn() -> bool + Sync),
+        counted: &(dyn Fn(u64) + Sync),
+    ) -> Texels {
+        let facts = &self.place.facts;
+        let step_m = self.cells.basis_m * lattice.step_m();
+        let refractor = RowRefractor::new(
+            &facts.surface,
+            step_m,
+            self.sun.to_light,
+            facts.ior,
+            self.end_m,
+        );
+        let all: Vec<_> = rows(lattice, &self.part).collect();
+        let water_m2 = self.cells.area_m2() * lattice.area_per_point_m2();
+        let bands: Vec<Texels> = (0..BANDS)
+            .into_par_iter()
+            .map(|band| {
+                let mut sum = vec![[0.0; 6]; texels];
+                let mut block = Block::new();
+                let mut scratch = Scratch::default();
+                for row in &all[all.len() * band / BANDS..all.len() * (band + 1) / BANDS] {
+                    if cancelled() {
+                        break;
+                    }
+                    let row_m = self.cells.water_m(row.start_m);
+                    let mut done = 0;
+                    while done < row.count {
+                        let start_m = row_m + step_m * done as f64;
+                        let count = (row.count - done).min(BLOCK as u64);
+                        refractor.send(start_m, &mut block);
+                        for i in 0..count as usize {
+                            let top_m = start_m + step_m * i as f64;
+                            self.book(&block, i, top_m, water_m2, &mut sum, &mut scratch);
+                        }
+                        done += count;
+                    }
+                    counted(row.count);
+                }
+                sum
+            })
+            .collect();
+        let mut total = vec![[0.0; 6]; texels];
+        for band in &bands {
+            for (sum, value) in total.iter_mut().zip(band) {
+                add_to(sum, value);
+            }
+        }
+        total
+    }
+
+    /// Books ray `i` of `block` where it crosses the first surface along the axis.
+    fn book(
+        &self,
+        block: &Block,
+        i: usize,
+        top_m: DVec2,
+        water_m2: f64,
+        sum: &mut Texels,
+        scratch: &mut Scratch,
+    ) {
+        if block.x_m[i].is_nan() || block.entered[i] <= 0.0 {
+            return;
+        }
+        let occluders = &self.place.occluders;
+        let from_m = DVec3::new(top_m.x, block.height_m[i], top_m.y);
+        let to_m = DVec3::new(block.x_m[i], -self.end_m, block.z_m[i]);
+        let Scratch { stack, crossings } = scratch;
+        occluders.crossings(self.object, from_m, to_m, stack, crossings);
+        let axis = self.level_box.axis;
+        let first = crossings.iter().find(|&&fraction| {
+            let p_m = from_m.lerp(to_m, fraction);
+            !occluders.meets_object(self.object, p_m, -axis, self.same_surface_m, stack)
+        });
+        let Some(&fraction) = first else { return };
+        let p_m = from_m.lerp(to_m, fraction);
+        let at = self.to_map(p_m).truncate();
+        let side = f64::from(self.level_box.key.texels);
+        if at.min_element() < 0.0 || at.max_element() >= side {
+            return; // rounding: the map has a rim
+        }
+        let texel = at.y as usize * self.level_box.key.texels as usize + at.x as usize;
+        let path_m = block.path_m[i] * fraction;
+        // What the ray meets there is the surface itself; anything a little before it stands in the way.
+        let until = fraction - self.same_surface_m / block.path_m[i];
+        let before_m = from_m.lerp(to_m, until.max(0.0));
+        let stopped = until > 0.0
+            && (self.behind_floor(from_m, before_m)
+                || occluders.blocks(from_m, before_m, None, 1.0, stack));
+        let first_channel = if stopped { 3 } else { 0 };
+        for c in 0..3 {
+            sum[texel][first_channel + c] += block.entered[i]
+                * transmission(self.place.facts.extinction_per_m[c], path_m)
+                * water_m2
+                * self.sun.irradiance_w_m2[c];
+        }
+    }
+
+    /// Whether the way between two points goes through the floor.
+    fn behind_floor(&self, from_m: DVec3, to_m: DVec3) -> bool {
+        let Some(floor) = &self.place.facts.floor else {
+            return false;
+        };
+        let fraction = (from_m.y - floor.y_m) / (from_m.y - to_m.y);
+        let p = from_m.lerp(to_m, fraction);
+        let p = DVec2::new(p.x, p.z);
+        (0.0..=1.0).contains(&fraction)
+            && p.cmpge(floor.rect.min).all()
+            && p.cmple(floor.rect.max).all()
+    }
+
+    /// W/m² on the surface of each texel: its flux over the area it shows to the axis, times the cosine.
+    fn irradiance(&self, sums: &Texels, cosines: &[Option<f64>]) -> Vec<[f64; 3]> {
+        sums.iter()
+            .zip(cosines)
+            .map(|(sum, cosine)| {
+                let per_m2 = self.level_box.density_per_flux * cosine.unwrap_or(0.0);
+                [sum[0] * per_m2, sum[1] * per_m2, sum[2] * per_m2]
+            })
+            .collect()
+    }
+}
+
+/// Space that every ray uses again.
+#[derive(Default)]
+struct Scratch {
+    stack: Vec<usize>,
+    crossings: Vec<f64>,
+}

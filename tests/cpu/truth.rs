@@ -1,0 +1,414 @@
+//! The truth about views and maps on objects, against closed forms, against the map on the floor, and against itself.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use caustica::physics::fresnel::fresnel_transmittance;
+use caustica::physics::refraction::{direction_to_light, refract_direction};
+use caustica::physics::sky::{sky_irradiance, sky_path_factor};
+use caustica::reference::closed_form::flat_water_irradiance;
+use caustica::reference::{
+    ReferenceError, ReferenceSettings, Truth, TruthKind, TruthSettings, irradiance_map, truth,
+};
+use caustica::scene::{Light, ResolvedScene, Sun};
+use glam::{DVec3, Vec3};
+use serde_json::{Value, json};
+
+use crate::scene_files::{mesh_of, with_meshes};
+
+/// A closed box of half sizes `half` around the origin, as OBJ; every face has its own normal.
+pub(crate) fn box_obj(half: Vec3) -> String {
+    use std::fmt::Write;
+    let mut text = String::new();
+    for i in 0..8 {
+        let sign = |bit: i32| if i & bit == 0 { -1.0 } else { 1.0 };
+        let (x, y, z) = (half.x * sign(1), half.y * sign(2), half.z * sign(4));
+        writeln!(text, "v {x} {y} {z}").unwrap();
+    }
+    for n in ["-1 0 0", "1 0 0", "0 -1 0", "0 1 0", "0 0 -1", "0 0 1"] {
+        writeln!(text, "vn {n}").unwrap();
+    }
+    let faces = [
+        [1, 5, 7, 3],
+        [2, 4, 8, 6],
+        [1, 2, 6, 5],
+        [3, 7, 8, 4],
+        [1, 3, 4, 2],
+        [5, 6, 8, 7],
+    ];
+    for (n, face) in faces.iter().enumerate() {
+        let [a, b, c, d] = face.map(|v| format!("{v}//{}", n + 1));
+        writeln!(text, "f {a} {b} {c} {d}").unwrap();
+    }
+    text
+}
+
+/// A pool with a box; `change` edits the JSON.
+fn pool(half: Vec3, change: impl FnOnce(&mut Value)) -> ResolvedScene {
+    let mesh = mesh_of(box_obj(half).as_bytes());
+    let mut value = json!({
+        "water": { "waves": [], "absorption_per_m": [0.3, 0.06, 0.0] },
+        "floor": { "depth_m": 1.5, "size_m": [20, 20] },
+        "lights": [{ "kind": "sun", "elevation_deg": 60, "azimuth_deg": 30, "irradiance_w_m2": [1000, 900, 800] }],
+        "objects": [{ "mesh": mesh.id, "translation_m": [0, -1, 0] }],
+        "camera": { "position_m": [0.2, 3, 0.3], "target_m": [0, -1.5, 0], "vertical_fov_deg": 20 },
+        "quality": { "level_map_texels": 32 },
+        "output": { "kind": "view", "width": 32, "height": 24 }
+    });
+    change(&mut value);
+    with_meshes(value, &[mesh])
+}
+
+fn waves() -> Value {
+    json!([
+        { "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 0.9, "direction_deg": 10 },
+        { "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 0.6, "direction_deg": 110, "phase_deg": 70 }
+    ])
+}
+
+fn settings(target_error: f64) -> TruthSettings {
+    TruthSettings {
+        target_error: Some(target_error),
+        ..TruthSettings::default()
+    }
+}
+
+fn find(scene: &ResolvedScene, target_error: f64) -> Truth {
+    truth(scene, &settings(target_error), &|_| (), &|| false).unwrap()
+}
+
+fn sun(scene: &ResolvedScene, index: usize) -> Sun {
+    match &scene.scene.lights[index] {
+        Light::Sun(sun) => sun.clone(),
+        Light::Sky(_) => panic!("a sun"),
+    }
+}
+
+#[track_caller]
+fn assert_near(got: [f64; 3], expected: [f64; 3], tolerance: f64) {
+    for c in 0..3 {
+        assert!(
+            (got[c] - expected[c]).abs() <= tolerance * expected[c],
+            "{got:?}, expected {expected:?}"
+        );
+    }
+}
+
+#[test]
+fn flat_water_seen_from_above_is_the_closed_form() {
+    let scene = pool(Vec3::new(0.1, 0.1, 0.1), |v| {
+        v["camera"]["target_m"] = json!([2, -1.5, 2]);
+        v["lights"]
+            .as_array_mut()
+            .unwrap()
+            .push(json!({ "kind": "sky", "radiance_w_m2_sr": [20, 30, 40] }));
+    });
+    let truth = find(&scene, 1e-3);
+    assert_eq!(
+        (truth.kind, truth.width, truth.height, truth.pixel_step),
+        (TruthKind::View, 32, 24, 1)
+    );
+    assert_eq!(truth.irradiance.len(), 32 * 24);
+    let mut expected = flat_water_irradiance(&scene.scene.water, 1.5, &sun(&scene, 0));
+    let through = caustica::physics::fresnel::diffuse_transmittance(1.333);
+    for (c, radiance) in [20.0, 30.0, 40.0].into_iter().enumerate() {
+        let extinction = scene.scene.water.absorption_per_m[c];
+        expected[c] += sky_irradiance(
+            radiance,
+            through,
+            extinction,
+            1.5,
+            sky_path_factor(1.333),
+            1.0,
+            1.333f64.powi(-2),
+        );
+    }
+    for value in &truth.irradiance {
+        assert_near(*value, expected, 1e-6);
+    }
+    assert!(truth.compared.iter().all(|&compared| compared));
+    assert!(truth.relative_error < 1e-10);
+    assert!(truth.shadow.unwrap().iter().all(|&share| share == 0.0));
+}
+
+#[test]
+fn the_top_of_a_box_is_as_deep_as_it_lies() {
+    let scene = pool(Vec3::new(0.5, 0.1, 0.5), |_| ());
+    let found = find(&scene, 1e-3);
+    let expected = flat_water_irradiance(&scene.scene.water, 0.9, &sun(&scene, 0));
+    // The camera looks at the middle of the top; f32 corners lie within 10⁻⁷ m.
+    let middle = found.irradiance[12 * 32 + 16];
+    assert_near(middle, expected, 1e-6);
+}
+
+#[test]
+fn a_tilted_plate_follows_the_cosine() {
+    for (tilt_deg, elevation_deg) in [(25.0f64, 60.0), (-30.0, 75.0)] {
+        let (sin, cos) = (tilt_deg.to_radians() / 2.0).sin_cos();
+        let change = |v: &mut Value| {
+            v["objects"][0]["rotation"] = json!([0, 0, sin, cos]);
+            v["water"]["absorption_per_m"] = json!([0, 0, 0]);
+            v["lights"][0]["elevation_deg"] = json!(elevation_deg);
+        };
+        let scene = pool(Vec3::new(0.5, 0.005, 0.5), change);
+        let sun = sun(&scene, 0);
+        let l = direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians());
+        let t = refract_direction(-l, DVec3::Y, 1.333).unwrap();
+        let (sin, cos) = tilt_deg.to_radians().sin_cos();
+        let normal = DVec3::new(-sin, cos, 0.0);
+        let share = l.y * fresnel_transmittance(l.y, 1.333) * -t.dot(normal) / -t.y;
+        let expected = sun.irradiance_w_m2.map(|e| e * share);
+        let view = find(&scene, 1e-3);
+        assert_near(view.irradiance[12 * 32 + 16], expected, 1e-6);
+        let map = pool(Vec3::new(0.5, 0.005, 0.5), |v| {
+            change(v);
+            v["output"] = json!({ "kind": "irradiance_map", "receiver": 0 });
+        });
+        let map = find(&map, 1e-3);
+        assert_eq!(
+            (map.kind, map.width, map.height),
+            (TruthKind::ObjectMap, 32, 32)
+        );
+        assert!(map.compared[16 * 32 + 16] && !map.compared[0]);
+        assert_near(map.irradiance[16 * 32 + 16], expected, 2e-6);
+    }
+}
+
+#[test]
+fn the_map_on_a_box_has_the_light_that_landed_on_it() {
+    let half = Vec3::new(0.4, 0.1, 0.3);
+    let flat_or_not = [json!([]), waves()];
+    for (wavy, waves) in flat_or_not.into_iter().enumerate() {
+        let water = |v: &mut Value| {
+            v["water"]["waves"] = waves.clone();
+            v["lights"][0]["elevation_deg"] = json!(90);
+        };
+        let on_object = pool(half, |v| {
+            water(v);
+            v["output"] = json!({ "kind": "irradiance_map", "receiver": 0 });
+        });
+        let map = find(&on_object, 4e-3);
+        if wavy == 0 {
+            let expected = flat_water_irradiance(&on_object.scene.water, 0.9, &sun(&on_object, 0));
+            for value in [16 * 32 + 16, 10 * 32 + 20].map(|at| map.irradiance[at]) {
+                assert_near(value, expected, 2e-6);
+            }
+        }
+        let on_floor = pool(half, |v| {
+            water(v);
+            v["output"] = json!({ "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 32, "height": 32 });
+        });
+        let counted = irradiance_map(
+            &on_floor,
+            &ReferenceSettings {
+                target_error: None,
+                max_rays: 2_000_000,
+                initial_rays: 1,
+            },
+            &|_| (),
+        )
+        .unwrap();
+        // The map is square; under a sun in the zenith its texels lie level. Texels on the rim whose middle misses the box
+        // hold no surface: what they would add is left out, so compare what is inside with a rim of one texel.
+        let side = 2.0 * 0.4 * 32.0 / 28.0 / 32.0;
+        let total: f64 = map.irradiance.iter().map(|e| e[1]).sum::<f64>() * side * side;
+        let landed = counted.landed_w[1][1];
+        // Waves throw a little light at the box's sides, which no texel of this map shows.
+        assert!((total / landed - 1.0).abs() < 0.03, "{total} {landed}");
+    }
+}
+
+#[test]
+fn points_on_the_floor_agree_with_the_map_of_the_floor() {
+    let change = |v: &mut Value| v["water"]["waves"] = waves();
+    let view = pool(Vec3::splat(0.1), |v| {
+        change(v);
+        v["camera"] = json!({ "kind": "orthographic", "position_m": [0, -1.2, 0], "target_m": [0, -1.5, 0], "up": [0, 0, -1], "height_m": 0.8 });
+        v["output"] = json!({ "kind": "view", "width": 16, "height": 16 });
+        v["objects"][0]["translation_m"] = json!([0.15, -1, 0]);
+    });
+    let map = pool(Vec3::splat(0.1), |v| {
+        change(v);
+        v["output"] = json!({ "kind": "irradiance_map", "receiver": "floor", "min_m": [-0.4, -0.4], "max_m": [0.4, 0.4], "width": 16, "height": 16 });
+        v["objects"][0]["translation_m"] = json!([0.15, -1, 0]);
+    });
+    // Seen from straight above under the water, pixels are texels of 5 cm: the same squares, found two ways.
+    let (points, texels) = (find(&view, 2e-3), find(&map, 2e-3));
+    let (mut difference, mut total) = (0.0, 0.0);
+    for (a, b) in points
+        .irradiance
+        .iter()
+        .flatten()
+        .zip(texels.irradiance.iter().flatten())
+    {
+        difference += (a - b).abs();
+        total += b;
+    }
+    let limit = points.relative_error + texels.relative_error;
+    assert!(
+        difference / total < 1.5 * limit,
+        "{} {limit}",
+        difference / total
+    );
+    let (a, b) = (
+        points.shadow.clone().unwrap(),
+        texels.shadow.clone().unwrap(),
+    );
+    assert!(b.iter().any(|&share| share > 0.9), "the box casts a shadow");
+    for (a, b) in a.iter().zip(&b) {
+        assert!((a - b).abs() < 0.03, "{a} {b}");
+    }
+    assert_eq!(points.shadow_edge(0), texels.shadow_edge(0));
+}
+
+#[test]
+fn suns_add_up() {
+    let with = |lights: Value| {
+        find(
+            &pool(Vec3::splat(0.3), |v| {
+                v["lights"] = lights;
+                v["water"]["waves"] = waves();
+                v["output"] = json!({ "kind": "view", "width": 8, "height": 6 });
+            }),
+            5e-3,
+        )
+    };
+    let one = json!({ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [100, 200, 300] });
+    let two = json!({ "kind": "sun", "elevation_deg": 45, "azimuth_deg": 120, "irradiance_w_m2": [300, 100, 0] });
+    let set = json!({ "kind": "sun", "elevation_deg": -5, "irradiance_w_m2": [300, 100, 0] });
+    let (a, b, both) = (
+        with(json!([one])),
+        with(json!([two])),
+        with(json!([one, two, set])),
+    );
+    let (mut difference, mut total) = (0.0, 0.0);
+    for i in 0..both.irradiance.len() {
+        for c in 0..3 {
+            difference += (a.irradiance[i][c] + b.irradiance[i][c] - both.irradiance[i][c]).abs();
+            total += both.irradiance[i][c];
+        }
+    }
+    assert!(difference / total < 1.5e-2, "{}", difference / total);
+}
+
+#[test]
+fn the_estimate_of_the_error_is_honest() {
+    let scene = |output: Value| {
+        pool(Vec3::new(0.3, 0.1, 0.3), |v| {
+            v["water"]["waves"] = waves();
+            v["output"] = output;
+        })
+    };
+    for output in [
+        json!({ "kind": "view", "width": 16, "height": 12 }),
+        json!({ "kind": "irradiance_map", "receiver": 0 }),
+    ] {
+        let scene = scene(output);
+        let (short, long) = (find(&scene, 2e-2), find(&scene, 3e-3));
+        assert!(long.rays > 5 * short.rays);
+        assert!(short.relative_error <= 2e-2 && long.relative_error <= 3e-3);
+        let (mut difference, mut total) = (0.0, 0.0);
+        for (a, b) in short
+            .irradiance
+            .iter()
+            .flatten()
+            .zip(long.irradiance.iter().flatten())
+        {
+            difference += (a - b).abs();
+            total += b;
+        }
+        assert!(
+            difference / total < 2.0 * short.relative_error,
+            "{} {}",
+            difference / total,
+            short.relative_error
+        );
+    }
+}
+
+#[test]
+fn dry_points_and_empty_pixels() {
+    // Half the picture is sky; a box stands in the air.
+    let scene = pool(Vec3::splat(0.3), |v| {
+        v["objects"][0]["translation_m"] = json!([0, 1, 0]);
+        v["camera"] =
+            json!({ "position_m": [0, 4, 0.01], "target_m": [0, 1, 0], "vertical_fov_deg": 5 });
+        v["output"] = json!({ "kind": "view", "width": 6, "height": 4 });
+    });
+    let found = find(&scene, 1e-3);
+    let expected = sun(&scene, 0)
+        .irradiance_w_m2
+        .map(|e| e * 60f64.to_radians().sin());
+    for value in &found.irradiance {
+        assert_near(*value, expected, 1e-12);
+    }
+    let away = pool(Vec3::splat(0.3), |v| {
+        v["camera"]["target_m"] = json!([5, 9, 3]);
+    });
+    let found = find(&away, 1e-3);
+    assert!(found.compared.iter().all(|&compared| !compared));
+    assert!(found.irradiance.iter().flatten().all(|&value| value == 0.0));
+}
+
+#[test]
+fn a_floor_map_may_have_the_sky() {
+    let scene = |sky: bool| {
+        pool(Vec3::splat(0.1), |v| {
+            v["lights"]
+                .as_array_mut()
+                .unwrap()
+                .push(json!({ "kind": "sky", "radiance_w_m2_sr": [20, 30, 40] }));
+            v["output"] = json!({ "kind": "irradiance_map", "receiver": "floor", "width": 8, "height": 8, "include_sky": sky });
+        })
+    };
+    let (with, without) = (find(&scene(true), 1e-2), find(&scene(false), 1e-2));
+    let through = caustica::physics::fresnel::diffuse_transmittance(1.333);
+    let expected = sky_irradiance(
+        40.0,
+        through,
+        0.0,
+        1.5,
+        sky_path_factor(1.333),
+        1.0,
+        1.333f64.powi(-2),
+    );
+    for (a, b) in with.irradiance.iter().zip(&without.irradiance) {
+        assert!((a[2] - b[2] - expected).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn whoever_cancels_is_let_go() {
+    for output in [
+        json!({ "kind": "view", "width": 64, "height": 64 }),
+        json!({ "kind": "irradiance_map", "receiver": 0 }),
+        json!({ "kind": "irradiance_map", "receiver": "floor" }),
+    ] {
+        let scene = pool(Vec3::splat(0.3), |v| {
+            v["water"]["waves"] = waves();
+            v["output"] = output;
+        });
+        let asked = AtomicU32::new(0);
+        let cancelled = || asked.fetch_add(1, Ordering::Relaxed) > 20;
+        let error = truth(&scene, &settings(1e-6), &|_| (), &cancelled).unwrap_err();
+        assert_eq!(error, ReferenceError::Cancelled);
+    }
+}
+
+#[test]
+fn questions_without_sense_are_errors() {
+    let ask = |scene: &ResolvedScene, settings: &TruthSettings| {
+        truth(scene, settings, &|_| (), &|| false)
+            .unwrap_err()
+            .to_string()
+    };
+    let good = pool(Vec3::ONE, |_| ());
+    let none = TruthSettings {
+        most_points: 0,
+        ..settings(1e-2)
+    };
+    assert!(ask(&good, &none).contains("most_points"));
+    assert!(ask(&good, &settings(-1.0)).contains("target_error"));
+    let mut blind = good.clone();
+    blind.scene.camera = None;
+    assert!(ask(&blind, &settings(1e-2)).contains("no camera"));
+}
