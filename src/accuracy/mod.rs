@@ -5,7 +5,9 @@
 //! `pareto` (which settings nothing beats). For people: `plot` (curves), `error_images` (contact sheets) and `report` (JSON,
 //! CSV, Markdown and the folder with everything); `words` writes numbers.
 
+mod colour_map;
 pub mod display;
+pub mod error_images;
 pub mod figures;
 pub mod flip;
 pub mod luv;
@@ -13,9 +15,12 @@ pub mod metrics;
 pub mod order;
 pub mod pareto;
 pub mod plot;
+mod resize;
+mod sheet;
 pub mod study;
 pub mod words;
 
+pub use error_images::error_images;
 pub use figures::error_figures;
 pub use metrics::{MetricError, convergence_order};
 pub use order::fit_orders;
