@@ -15,6 +15,7 @@ pub mod metrics;
 pub mod order;
 pub mod pareto;
 pub mod plot;
+pub mod report;
 mod resize;
 mod sheet;
 pub mod study;
