@@ -6,9 +6,11 @@
 //! `pareto` (which settings nothing beats). For people: `plot` (curves), `error_images` (contact sheets) and `report` (JSON,
 //! CSV, Markdown and the folder with everything); `words` writes numbers.
 
+mod colour_map;
 pub mod dial;
-pub mod estimate;
 pub mod display;
+pub mod error_images;
+pub mod estimate;
 pub mod figures;
 pub mod flip;
 pub mod luv;
@@ -16,10 +18,14 @@ pub mod metrics;
 pub mod order;
 pub mod pareto;
 pub mod plot;
+pub mod report;
+mod resize;
+mod sheet;
 pub mod study;
 pub mod sweep;
 pub mod words;
 
+pub use error_images::error_images;
 pub use figures::error_figures;
 pub use metrics::{MetricError, convergence_order};
 pub use order::fit_orders;

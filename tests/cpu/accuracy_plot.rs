@@ -68,7 +68,7 @@ fn error_against_time_says_what_it_shows() {
         "0.1 %",
         "1 %",
         "10 %",
-        "1 ms",
+        "2 ms",
         "10 ms",
         "100 ms",
         "the truth's own error, 0.06 %"

@@ -9,7 +9,7 @@ use caustica::stats::{AdapterStats, Warning};
 use serde_json::{Value, json};
 
 /// Relative error of the truth.
-pub const TRUTH_ERROR: f64 = 6e-4;
+pub(crate) const TRUTH_ERROR: f64 = 6e-4;
 
 fn spread(median: f64) -> SpreadMs {
     SpreadMs {
@@ -20,7 +20,7 @@ fn spread(median: f64) -> SpreadMs {
 }
 
 /// One setting with this error, apart from the truth's own, and this time.
-pub fn point(dial: &str, value: Value, error: f64, ms: f64) -> Point {
+pub(crate) fn point(dial: &str, value: Value, error: f64, ms: f64) -> Point {
     let relative_l1 = error.hypot(TRUTH_ERROR);
     Point {
         dials: [(dial.to_owned(), value)].into(),
@@ -55,7 +55,7 @@ pub fn point(dial: &str, value: Value, error: f64, ms: f64) -> Point {
 }
 
 /// Three sweeps: beams (order 2), steps (order 1), hits (words).
-pub fn study() -> Study {
+pub(crate) fn study() -> Study {
     let beams = [64, 128, 256, 512, 1024, 2048].map(|n| {
         let n_f = f64::from(n);
         point(
@@ -113,7 +113,7 @@ pub fn study() -> Study {
 }
 
 /// A caustic of waves that cross, W/m², and renders of it that are blurred the more, the larger their error.
-pub fn images(study: &Study, width: u32, height: u32) -> StudyImages {
+pub(crate) fn images(study: &Study, width: u32, height: u32) -> StudyImages {
     let truth = caustic(width, height, 0.0);
     let points = study.sweeps.iter().map(|sweep| {
         let image = |point: &Point| caustic(width, height, point.error.relative_l1);

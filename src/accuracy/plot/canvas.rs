@@ -13,6 +13,9 @@ pub(in crate::accuracy) type Spot = (f64, f64);
 /// Ratio of a font's line height, by which the library sizes it, to its em.
 const LINE_PER_EM: f64 = 1.24;
 
+/// How far the library sets centred text too high, in ems: its bitmaps by 0.22, its SVG files by 0.1. The mean of both.
+const CENTRE_LIFT: f64 = 0.16;
+
 /// How a text stands at its spot.
 #[derive(Clone, Copy)]
 pub(in crate::accuracy) struct TextLook {
@@ -163,6 +166,16 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
         spot: Spot,
         look: TextLook,
     ) -> Result<(), PlotError> {
+        let lift = match look.v {
+            VPos::Center => CENTRE_LIFT * look.size,
+            _ => 0.0,
+        };
+        // The foot of upright text points to the right.
+        let spot = if look.upright {
+            (spot.0 + lift, spot.1)
+        } else {
+            (spot.0, spot.1 + lift)
+        };
         let (style, spot) = (self.style(look), self.pixel(spot));
         self.backend.draw_text(text, &style, spot).map_err(failed)
     }

@@ -7,7 +7,7 @@ use super::axis::LogAxis;
 use super::canvas::{Canvas, Spot, Stroke, TextLook};
 use super::error::PlotError;
 use super::frame::{
-    Column, Frame, LEFT, LINE, RIGHT, clipped, draw_floor, error_axis, floor_stroke,
+    BOTTOM, Column, Frame, LEFT, LINE, RIGHT, clipped, draw_floor, error_axis, floor_stroke,
 };
 use super::legend::{self, Entry, Sign};
 use super::marker;
@@ -190,9 +190,14 @@ impl Convergence<'_> {
                 continue;
             };
             canvas.dashed(from, to, 2.5, stroke)?;
-            // Along the end, on the side away from the fit.
-            let look = TextLook::new(11.0, SOFT_INK).at(HPos::Right, VPos::Center);
-            let spot = (to.0 - 6.0, to.1 - 12.0);
+            // Below the end, or beside it where the line leaves through the bottom.
+            let below = to.1 + 20.0 < BOTTOM;
+            let (h, spot) = if below {
+                (HPos::Right, (to.0 - 4.0, to.1 + 13.0))
+            } else {
+                (HPos::Left, (to.0 + 6.0, to.1 - 9.0))
+            };
+            let look = TextLook::new(11.0, SOFT_INK).at(h, VPos::Center);
             canvas.text(&format!("order {order}"), spot, look)?;
         }
         Ok(())
@@ -210,10 +215,11 @@ impl Convergence<'_> {
         };
         canvas.line(from, to, self.fit_stroke())?;
         let middle = (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1));
+        // Towards the corner that a falling line leaves empty.
         let look = TextLook::new(14.0, palette::sweep_ink(self.marks[0].sweep))
-            .at(HPos::Left, VPos::Bottom);
+            .at(HPos::Right, VPos::Center);
         let text = format!("order {}", significant(fit.order, 3));
-        canvas.text(&text, (middle.0 + 10.0, middle.1 - 8.0), look)
+        canvas.text(&text, (middle.0 - 10.0, middle.1 + 12.0), look)
     }
 
     fn fit_stroke(&self) -> Stroke {

@@ -28,7 +28,7 @@ pub(super) const WIDTH: u32 = 960;
 pub(super) const HEIGHT: u32 = 600;
 
 /// Backend pixels in a logical one: the library places everything on whole pixels, and its polygons have hard edges.
-const FINE: u32 = 4;
+pub(in crate::accuracy) const FINE: u32 = 4;
 /// Samples along each side of a pixel of the PNG file.
 const SAMPLES: u32 = 2;
 
@@ -66,7 +66,7 @@ fn bitmap(drawing: &impl Drawing) -> Result<Vec<u8>, PlotError> {
             .present()
             .map_err(|e| PlotError::Draw(e.to_string()))?;
     }
-    let smooth = averaged(&pixels, width as usize, height as usize);
+    let smooth = averaged(&pixels, width as usize, SAMPLES as usize);
     png_file(&smooth, width / SAMPLES, height / SAMPLES)
 }
 
@@ -77,9 +77,9 @@ fn paint<DB: DrawingBackend>(drawing: &impl Drawing, backend: &mut DB) -> Result
     drawing.draw(&mut canvas)
 }
 
-/// Mean of each square of samples.
-fn averaged(pixels: &[u8], width: usize, height: usize) -> Vec<u8> {
-    let samples = SAMPLES as usize;
+/// Mean of each square of `samples` × `samples` RGB pixels; width and height are multiples of it.
+pub(in crate::accuracy) fn averaged(pixels: &[u8], width: usize, samples: usize) -> Vec<u8> {
+    let height = pixels.len() / (3 * width);
     let mut out = Vec::with_capacity(pixels.len() / (samples * samples));
     for y in (0..height).step_by(samples) {
         for x in (0..width).step_by(samples) {

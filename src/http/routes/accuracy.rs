@@ -24,7 +24,7 @@ use super::super::observe::Arrival;
 use super::super::problem::AccuracyProblems;
 use super::super::state::AppState;
 use crate::accuracy::dial::Dial;
-use crate::accuracy::error_images::contact_sheet;
+use crate::accuracy::error_images::error_images;
 use crate::accuracy::plot::{convergence, error_against_time};
 use crate::accuracy::report::{self, ReportLinks};
 use crate::accuracy::study::{Study, StudyImages};
@@ -290,7 +290,7 @@ fn respond(
             for sweep in 0..study.sweeps.len() {
                 let plot = convergence(study, sweep).map_err(|e| defect(&e))?;
                 answer.convergence_svg.push(plot.svg);
-                let sheet = contact_sheet(study, images, sweep).map_err(|e| defect(&e))?;
+                let sheet = error_images(study, images, sweep).map_err(|e| defect(&e))?;
                 answer.error_images_base64.push(STANDARD.encode(sheet));
             }
             Json(answer).into_response()

@@ -1,0 +1,61 @@
+//! The words of the report, for someone who has not seen the program.
+
+/// Word and explanation.
+pub(super) const GLOSSARY: [(&str, &str); 14] = [
+    (
+        "dial",
+        "a setting that trades accuracy for time; a *sweep* tries several values of one dial with all else unchanged",
+    ),
+    (
+        "truth",
+        "the same scene traced ray by ray in double precision by another algorithm; its own error is measured by comparing two independent halves of its rays, and no error much below it can be told",
+    ),
+    (
+        "L1",
+        "sum of all absolute differences from the truth, divided by the sum of the truth: the share of the light that is in the wrong place",
+    ),
+    (
+        "p99",
+        "99 % of all values are nearer to the truth than this, in per cent of the truth's mean",
+    ),
+    (
+        "FLIP",
+        "the difference that people see when the two pictures alternate on a screen: 0 none, 1 the largest",
+    ),
+    (
+        "Luv",
+        "mean distance of the pictures' colours in CIE Luv; black and white are 100 apart, about 1 is just noticeable",
+    ),
+    (
+        "bias",
+        "light in excess (+) or missing (−) in total, in per cent of all light",
+    ),
+    (
+        "at shadow edges",
+        "share of the L1 error that lies within two texels of the edge of a mesh's shadow",
+    ),
+    (
+        "estimate",
+        "the L1 error that the render expected of itself, without knowing the truth",
+    ),
+    (
+        "time",
+        "from the scene to the finished linear picture, warm: median of the runs, with the fastest and the slowest",
+    ),
+    (
+        "peak memory",
+        "the most GPU memory that was held at one time",
+    ),
+    (
+        "order",
+        "n, when the error falls as the dial to the power −n: with order 2, twice the dial means a quarter of the error",
+    ),
+    (
+        "Pareto front (★)",
+        "the settings that nothing beats: whatever is faster errs more, whatever errs less is slower",
+    ),
+    (
+        "signed error pictures",
+        "blue where the render is too dark, red where it is too bright, white where it is right",
+    ),
+];

@@ -1,0 +1,20 @@
+//! A study as files.
+//!
+//! `json` and `csv` are for programs, `markdown` for people: it builds on `tables`, draws `conclusions` from the figures and
+//! explains the words in a `glossary`. `write` fills a folder with all of them and the pictures. `error` says what went wrong.
+
+mod conclusions;
+mod csv;
+mod error;
+mod glossary;
+mod json;
+mod markdown;
+mod tables;
+mod write;
+
+pub use conclusions::conclusions;
+pub use csv::to_csv;
+pub use error::ReportError;
+pub use json::to_json;
+pub use markdown::{ReportLinks, SweepLinks, to_markdown};
+pub use write::write_study;
