@@ -6,6 +6,7 @@
     reason = "`json!` literals are passed as they are"
 )]
 
+mod accuracy_dial;
 mod accuracy_metrics;
 mod accuracy_plot;
 mod cli;
@@ -46,4 +47,5 @@ mod teapot;
 mod tone;
 mod truth;
 mod truth_disk;
+mod tuning;
 mod waves;

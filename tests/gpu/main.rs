@@ -8,6 +8,7 @@
 
 mod determinism;
 mod energy;
+mod estimate;
 mod flat;
 mod footprint;
 mod formulas;

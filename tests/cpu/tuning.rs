@@ -1,0 +1,194 @@
+//! Choosing dials: from looks to cells, from a budget to cells, and the calibration behind it.
+
+use std::convert::Infallible;
+
+use caustica::scene::Quality;
+use caustica::tuning::calibration::CalibrationError;
+use caustica::tuning::choose::{self, Prospect};
+use caustica::tuning::cost::{PassRate, fit_rate};
+use caustica::tuning::{Calibration, ladder};
+
+fn map(most_cells: u32) -> Prospect {
+    Prospect {
+        most_cells,
+        margin: 1.2,
+        is_view: false,
+    }
+}
+
+/// A scene whose error is `at_64` with 64 cells and falls with `order`.
+fn scene(at_64: f64, order: f64) -> impl FnMut(u32) -> Result<Option<f64>, Infallible> {
+    move |cells| Ok(Some(at_64 * (64.0 / f64::from(cells)).powf(order)))
+}
+
+#[test]
+fn the_fewest_cells_under_the_target_are_chosen() {
+    for target in [0.3, 0.05, 0.02, 0.01, 0.003, 0.0005] {
+        let choice = choose::for_error(target, &map(2048), scene(0.04, 2.0)).unwrap();
+        let needed = 64.0 * (0.04_f64 * 1.2 / target).sqrt();
+        assert!(choice.meets, "{choice:?}");
+        assert!(choice.predicted_error <= target, "{choice:?}");
+        let cells = f64::from(choice.cells);
+        assert!(
+            cells >= needed && cells <= (needed + 1.0).max(16.0),
+            "{target}: {choice:?}"
+        );
+    }
+}
+
+#[test]
+fn looks_stay_cheaper_than_the_frame() {
+    let mut looked = Vec::new();
+    let mut error = scene(0.1, 2.0);
+    let choice = choose::for_error(0.001, &map(2048), |cells| {
+        looked.push(cells);
+        error(cells)
+    })
+    .unwrap();
+    let cells = |n: u32| f64::from(n).powi(2);
+    let cost: f64 = looked.iter().map(|&n| cells(n)).sum();
+    assert!(
+        cost <= 0.5 * cells(choice.cells),
+        "{looked:?} for {choice:?}"
+    );
+    assert_eq!(choice.looks as usize, looked.len());
+}
+
+#[test]
+fn what_cannot_be_met_is_said_with_the_best_there_is() {
+    let choice = choose::for_error(1e-4, &map(256), scene(0.04, 2.0)).unwrap();
+    assert!(!choice.meets);
+    assert_eq!(choice.cells, 256);
+    assert!(choice.predicted_error > 1e-4);
+}
+
+#[test]
+fn of_a_view_the_order_is_measured() {
+    let view = Prospect {
+        is_view: true,
+        ..map(2048)
+    };
+    let choice = choose::for_error(0.02, &view, scene(0.1, 0.8)).unwrap();
+    let needed = 64.0 * (0.1_f64 * 1.2 / 0.02).powf(1.0 / 0.8);
+    assert!(choice.looks >= 2, "{choice:?}");
+    assert!(
+        (f64::from(choice.cells) / needed - 1.0).abs() < 0.02,
+        "{choice:?}, {needed}"
+    );
+}
+
+#[test]
+fn darkness_needs_the_fewest() {
+    let dark = |_| Ok::<_, Infallible>(None);
+    let choice = choose::for_error(0.01, &map(2048), dark).unwrap();
+    assert_eq!(choice.cells, ladder::FEWEST_CELLS);
+    assert!(choice.meets);
+}
+
+#[test]
+fn an_error_of_a_look_is_passed_on() {
+    assert_eq!(
+        choose::for_error(0.01, &map(2048), |_| Err("lost")),
+        Err("lost")
+    );
+}
+
+#[test]
+fn a_budget_gets_the_most_cells_it_pays_for() {
+    let ms = |cells: u32| Ok::<_, Infallible>(2.0 + 1e-3 * f64::from(cells).powi(2));
+    let (cells, meets) = choose::for_time(100.0, 2048, ms).unwrap();
+    assert!(meets);
+    assert!(
+        ms(cells).unwrap() <= 100.0 && ms(cells + 100).unwrap() > 80.0,
+        "{cells}"
+    );
+    assert_eq!(choose::for_time(100.0, 64, ms).unwrap(), (64, true));
+    assert_eq!(
+        choose::for_time(1.0, 2048, ms).unwrap(),
+        (ladder::FEWEST_CELLS, false)
+    );
+}
+
+#[test]
+fn rungs_are_valid_and_keep_what_is_no_matter_of_light() {
+    let given = Quality {
+        pixel_samples: 3,
+        target_error: Some(0.01),
+        ..Quality::default()
+    };
+    for cells in [1, 16, 100, 777, 2048, 9999] {
+        let rung = ladder::rung(&given, cells);
+        assert!((16..=2048).contains(&rung.water_cells));
+        assert!((16..=4096).contains(&rung.map_texels));
+        assert!(rung.level_map_texels.is_power_of_two());
+        assert!((16..=2048).contains(&rung.level_map_texels));
+        assert_eq!(rung.pixel_samples, 3);
+        assert_eq!(rung.target_error, None, "a rung asks for nothing");
+    }
+}
+
+#[test]
+fn rates_are_found_again() {
+    let truth = PassRate {
+        start_ms: 0.5,
+        unit_ns: 20.0,
+    };
+    let measured: Vec<(f64, f64)> = [1e3, 1e5, 1e6]
+        .map(|work| (work, truth.start_ms + truth.unit_ns * 1e-6 * work))
+        .to_vec();
+    let found = fit_rate(&measured);
+    assert!(
+        (found.start_ms - 0.5).abs() < 1e-9 && (found.unit_ns - 20.0).abs() < 1e-6,
+        "{found:?}"
+    );
+    // Nothing is ever negative, whatever was measured.
+    for odd in [
+        vec![(1e3, 5.0), (1e6, 1.0)],
+        vec![(1e3, 0.001), (1e6, 50.0)],
+        vec![(5.0, 1.0)],
+        vec![],
+    ] {
+        let found = fit_rate(&odd);
+        assert!(
+            found.start_ms >= 0.0 && found.unit_ns >= 0.0,
+            "{odd:?}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn the_built_in_calibration_knows_every_pass() {
+    let built_in = Calibration::default();
+    for pass in caustica::passes::ALL {
+        assert!(built_in.passes.contains_key(pass.name), "{}", pass.name);
+    }
+    let text = serde_json::to_string(&built_in).unwrap();
+    assert_eq!(Calibration::read(&text, "it").unwrap(), built_in);
+}
+
+#[test]
+fn a_file_that_is_no_calibration_is_refused() {
+    let good = serde_json::to_value(Calibration::default()).unwrap();
+    let mut cases = vec![("{}".to_owned(), "missing field")];
+    for (field, value, complaint) in [
+        ("form", serde_json::json!(2), "form"),
+        ("error_margin", serde_json::json!(0.5), "error_margin"),
+        ("frame_ms", serde_json::json!(-1), "-1 is no time"),
+        ("speed", serde_json::json!(1), "unknown field"),
+    ] {
+        let mut bad = good.clone();
+        bad[field] = value;
+        cases.push((bad.to_string(), complaint));
+    }
+    for (text, complaint) in cases {
+        let error = Calibration::read(&text, "file.json").unwrap_err();
+        assert!(matches!(error, CalibrationError::Form { .. }));
+        let words = error.to_string();
+        assert!(
+            words.contains(complaint) && words.contains("file.json"),
+            "{words}"
+        );
+    }
+    let missing = Calibration::load(std::path::Path::new("no/such/file.json")).unwrap_err();
+    assert!(missing.to_string().contains("no/such/file.json"));
+}

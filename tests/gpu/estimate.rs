@@ -1,0 +1,210 @@
+//! A frame's estimate of its own error, and dials chosen for a wanted error or time, against the float64 reference.
+
+use std::sync::OnceLock;
+
+use caustica::accuracy::metrics::relative_l1;
+use caustica::reference::{ReferenceSettings, irradiance_map};
+use serde_json::{Value, json};
+
+use super::harness::{self, Map};
+use super::scene_files;
+
+/// The truth about the sine pool; its own error is a thousandth.
+fn truth() -> &'static [[f64; 3]] {
+    static TRUTH: OnceLock<Vec<[f64; 3]>> = OnceLock::new();
+    TRUTH.get_or_init(|| {
+        let settings = ReferenceSettings {
+            target_error: Some(1e-3),
+            ..ReferenceSettings::default()
+        };
+        let map = irradiance_map(&scene_files::load("sine_pool", &[]), &settings, &|_| {});
+        map.unwrap().irradiance
+    })
+}
+
+/// The sine pool with some fields of `quality`.
+fn sine_pool(quality: &[(&str, &str)]) -> Map {
+    let changes: Vec<(String, &str)> = quality
+        .iter()
+        .map(|(name, value)| (format!("/quality/{name}"), *value))
+        .collect();
+    let changes: Vec<(&str, &str)> = changes.iter().map(|(p, v)| (p.as_str(), *v)).collect();
+    Map::from(&scene_files::load("sine_pool", &changes))
+}
+
+fn error(map: &Map) -> f64 {
+    relative_l1(map.values(), truth().as_flattened()).unwrap()
+}
+
+fn estimate(map: &Map) -> f64 {
+    map.stats
+        .accuracy
+        .as_ref()
+        .unwrap()
+        .estimated_error
+        .unwrap()
+}
+
+#[test]
+fn the_estimate_is_within_a_factor_of_two() {
+    for cells in ["48", "64", "100", "128", "256"] {
+        let map = sine_pool(&[("water_cells", cells), ("estimate_error", "true")]);
+        let (true_error, estimated) = (error(&map), estimate(&map));
+        println!("{cells} cells: {true_error:.2e}, estimated {estimated:.2e}");
+        assert!((0.5..=2.0).contains(&(estimated / true_error)), "{cells}");
+    }
+}
+
+#[test]
+fn it_changes_nothing_else() {
+    let plain = sine_pool(&[("water_cells", "64")]);
+    let judged = sine_pool(&[("water_cells", "64"), ("estimate_error", "true")]);
+    assert!(plain.stats.accuracy.is_none());
+    assert_eq!(plain.values(), judged.values());
+    assert_eq!(plain.stats.energy, judged.stats.energy);
+    assert_eq!(
+        estimate(&judged),
+        estimate(&sine_pool(&[
+            ("water_cells", "64"),
+            ("estimate_error", "true")
+        ]))
+    );
+    let names =
+        |map: &Map| -> Vec<String> { map.stats.passes.iter().map(|p| p.name.clone()).collect() };
+    assert!(!names(&plain).contains(&"estimate".to_owned()));
+    assert!(names(&judged).contains(&"estimate".to_owned()));
+    assert_eq!(
+        judged.stats.memory.planned_peak_bytes,
+        judged.stats.memory.peak_bytes
+    );
+}
+
+fn boxes(output: &Value, lights: &Value) -> Value {
+    json!({
+        "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 1.1, "direction_deg": 30 }] },
+        "floor": { "depth_m": 2, "size_m": [8, 8] },
+        "lights": lights,
+        "objects": [{ "mesh": "box.obj", "translation_m": [0, -1, 0], "scale": 0.4 }],
+        "camera": { "position_m": [0, 2, 2], "target_m": [0, -1.5, 0] },
+        "quality": { "water_cells": 96, "estimate_error": true },
+        "output": output
+    })
+}
+
+#[test]
+fn every_output_and_any_number_of_suns_can_be_estimated() {
+    let sun = |azimuth: f64| json!({ "kind": "sun", "elevation_deg": 60, "azimuth_deg": azimuth, "irradiance_w_m2": [1, 1, 1] });
+    let one = json!([sun(0.0)]);
+    let two = json!([sun(0.0), sun(110.0)]);
+    let floor = |width: u32, height: u32| json!({ "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": width, "height": height });
+    let outputs = [
+        (floor(96, 96), &two),
+        (floor(97, 64), &one),
+        (floor(1, 1), &one),
+        (json!({ "kind": "irradiance_map", "receiver": 0 }), &one),
+        (
+            json!({ "kind": "view", "width": 64, "height": 36, "layers": ["irradiance"] }),
+            &two,
+        ),
+    ];
+    for (output, lights) in outputs {
+        let frame = harness::render(&scene_files::scene(boxes(&output, lights)));
+        let estimated = frame.stats.accuracy.unwrap().estimated_error.unwrap();
+        println!("{output}: {estimated:.2e}");
+        assert!(estimated > 1e-6 && estimated < 0.5, "{output}: {estimated}");
+    }
+}
+
+#[test]
+fn in_the_dark_there_is_nothing_to_estimate() {
+    let output =
+        json!({ "kind": "irradiance_map", "receiver": "floor", "width": 16, "height": 16 });
+    let frame = harness::render(&scene_files::scene(boxes(&output, &json!([]))));
+    assert!(frame.stats.accuracy.is_none());
+    assert!(
+        frame
+            .stats
+            .absent
+            .iter()
+            .any(|pass| pass.name == "estimate")
+    );
+}
+
+#[test]
+fn a_wanted_error_is_kept_and_not_overpaid() {
+    // The fewest cells that would do, by doubling and halving between: what a person could find by trying.
+    for (target, most_cells) in [("0.05", 91), ("0.02", 181), ("0.01", 256), ("0.003", 512)] {
+        let map = sine_pool(&[("target_error", target)]);
+        let chosen = map.stats.accuracy.as_ref().unwrap().chosen.clone().unwrap();
+        let true_error = error(&map);
+        println!(
+            "{target}: {} cells, {true_error:.2e}, predicted {:.2e}",
+            chosen.water_cells, chosen.predicted_error
+        );
+        let target: f64 = target.parse().unwrap();
+        assert!(chosen.meets && chosen.predicted_error <= target);
+        assert!(true_error <= target, "{true_error}");
+        assert!(chosen.water_cells <= most_cells, "{}", chosen.water_cells);
+    }
+}
+
+#[test]
+fn the_chosen_dials_give_the_same_bytes_when_asked_for_by_name() {
+    let asked = sine_pool(&[("target_error", "0.02")]);
+    let chosen = asked
+        .stats
+        .accuracy
+        .as_ref()
+        .unwrap()
+        .chosen
+        .clone()
+        .unwrap();
+    let by_name = sine_pool(&[
+        ("water_cells", &chosen.water_cells.to_string()),
+        ("map_texels", &chosen.map_texels.to_string()),
+        ("level_map_texels", &chosen.level_map_texels.to_string()),
+        ("split_levels", &chosen.split_levels.to_string()),
+    ]);
+    assert_eq!(asked.values(), by_name.values());
+    assert_ne!(asked.stats.scene_hash, by_name.stats.scene_hash);
+    assert_eq!(
+        asked.values(),
+        sine_pool(&[("target_error", "0.02")]).values()
+    );
+}
+
+#[test]
+fn an_impossible_wish_is_answered_with_the_best_there_is() {
+    let mut scene = boxes(
+        &json!({ "kind": "irradiance_map", "receiver": "floor", "width": 32, "height": 32 }),
+        &json!([{ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [1, 1, 1] }]),
+    );
+    scene["quality"] = json!({ "time_budget_ms": 0.1 });
+    let frame = harness::render(&scene_files::scene(scene));
+    let chosen = frame.stats.accuracy.unwrap().chosen.unwrap();
+    assert!(!chosen.meets);
+    assert_eq!(chosen.water_cells, 16);
+    let warning = frame
+        .stats
+        .warnings
+        .iter()
+        .find(|w| w.code == "time_budget_not_met")
+        .unwrap();
+    assert_eq!(warning.pointer.as_deref(), Some("/quality/time_budget_ms"));
+}
+
+#[test]
+fn more_time_buys_more_cells_and_a_smaller_predicted_error() {
+    let chosen = |budget: &str| {
+        let map = sine_pool(&[("time_budget_ms", budget)]);
+        map.stats.accuracy.as_ref().unwrap().chosen.clone().unwrap()
+    };
+    let (short, long) = (chosen("20"), chosen("400"));
+    assert!(short.meets && long.meets, "{short:?} {long:?}");
+    assert!(
+        long.water_cells > 2 * short.water_cells,
+        "{short:?} {long:?}"
+    );
+    assert!(long.predicted_error < 0.5 * short.predicted_error);
+    assert!(short.predicted_ms <= 20.0 && long.predicted_ms <= 400.0);
+}
