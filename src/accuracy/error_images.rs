@@ -33,8 +33,8 @@ const CAPTIONS: usize = 44;
 const REMARKS: usize = 66;
 const ROW_GAP: usize = 14;
 
-/// Draws the sheet of one sweep as a PNG file. Of more than [`MOST_COLUMNS`] settings the first ones are shown, and the rest is
-/// named in a remark.
+/// Draws the sheet of one sweep as a PNG file. Of more than [`MOST_COLUMNS`] settings some are shown, evenly from the first to
+/// the last, and the rest is named in a remark.
 ///
 /// # Errors
 ///
@@ -113,7 +113,18 @@ fn shown_images<'a>(
             sweep.dial, other.width, other.height, size.0, size.1
         )));
     }
-    Ok(found.iter().take(MOST_COLUMNS).collect())
+    let shown = shown_indices(found.len()).into_iter();
+    Ok(shown.map(|index| &found[index]).collect())
+}
+
+/// Which of so many settings are shown.
+fn shown_indices(count: usize) -> Vec<usize> {
+    if count <= MOST_COLUMNS {
+        return (0..count).collect();
+    }
+    (0..MOST_COLUMNS)
+        .map(|column| column * (count - 1) / (MOST_COLUMNS - 1))
+        .collect()
 }
 
 /// Errors of one image, value by value.
@@ -317,9 +328,10 @@ fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index:
     let truth = format!("own error {}", words::percent(study.truth.relative_error));
     write("truth".to_owned(), (left, y + 8.0), strong, narrow);
     write(truth, (left, y + 28.0), soft, narrow);
-    let points = sweep.points.iter().take(MOST_COLUMNS);
-    for (index, point) in points.enumerate() {
-        let x = layout.spot(index + 1, 0).0 as f64;
+    let indices = shown_indices(sweep.points.len());
+    for (column, index) in indices.iter().enumerate() {
+        let point = &sweep.points[*index];
+        let x = layout.spot(column + 1, 0).0 as f64;
         let name = words::named_setting(sweep, point);
         let figures = format!(
             "L1 {} · {} ms",
@@ -336,9 +348,9 @@ fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index:
         "Stronger errors have the colour of the scale's end.".to_owned(),
     ];
     if sweep.points.len() > MOST_COLUMNS {
-        let rest: Vec<String> = sweep.points[MOST_COLUMNS..]
-            .iter()
-            .map(|point| words::setting(sweep, point))
+        let hidden = (0..sweep.points.len()).filter(|index| !indices.contains(index));
+        let rest: Vec<String> = hidden
+            .map(|index| words::setting(sweep, &sweep.points[index]))
             .collect();
         let rest = rest.join("; ");
         remarks.push(format!("Not shown, for lack of room: {rest}."));
