@@ -2,7 +2,7 @@
 # Installs what Caustica needs from the system, if it is missing. The Makefile, the Dockerfile and the CI call this one
 # script, so that there is one list.
 #
-#   deploy/install-deps.sh --build       what compiling needs: a C compiler and linker, make
+#   deploy/install-deps.sh --build       what compiling needs: a C and C++ compiler and linker, make
 #   deploy/install-deps.sh --run         what running needs: the Vulkan loader and a driver (a software one if there is none)
 #   deploy/install-deps.sh --container   --run, and what a GPU driver mounted into a container links against
 #
@@ -33,6 +33,12 @@ has_c_compiler() {
         cc -x c -o /dev/null - >/dev/null 2>&1
 }
 
+# The same for C++: g++ without libstdc++-dev fails here.
+has_cxx_compiler() {
+    has_command c++ && printf '#include <cmath>\nint main() { return 0; }\n' |
+        c++ -x c++ -o /dev/null - >/dev/null 2>&1
+}
+
 has_library() {
     for ldconfig in ldconfig /sbin/ldconfig /usr/sbin/ldconfig; do
         has_command "$ldconfig" && "$ldconfig" -p 2>/dev/null | grep -q "[[:space:]]$1 " && return 0
@@ -60,11 +66,15 @@ need() { # need PACKAGES TEST...
 if [ $build = yes ]; then
     # The build of blake3 compiles assembly; Rust links through cc.
     need "gcc libc6-dev" has_c_compiler
+    # The build of nv-flip compiles C++.
+    need g++ has_cxx_compiler
     need make has_command make
 fi
 # macOS brings Metal, and needs nothing to run.
 if [ $run = yes ] && [ "$(uname -s)" != Darwin ]; then
     need libvulkan1 has_library libvulkan.so.1
+    # What C++ code of the program links against.
+    need libstdc++6 has_library libstdc++.so.6
     need mesa-vulkan-drivers has_vulkan_driver
 fi
 if [ $container = yes ]; then
@@ -76,9 +86,9 @@ fi
 if [ -n "$missing" ]; then
     if ! has_command apt-get; then
         echo "install-deps: missing here, by the names of the Debian packages:$missing" >&2
-        echo "install-deps: please install their equivalents (a C compiler, make, the Vulkan loader, a Vulkan driver)" >&2
+        echo "install-deps: please install their equivalents (a C and a C++ compiler, make, the Vulkan loader, a Vulkan driver)" >&2
         # A driver may announce itself elsewhere on such a system, and make may be what called.
-        if [ $build = yes ] && ! has_c_compiler; then exit 1; fi
+        if [ $build = yes ] && ! { has_c_compiler && has_cxx_compiler; }; then exit 1; fi
         if [ $run = yes ] && ! has_library libvulkan.so.1; then exit 1; fi
         echo "install-deps: going on with what is here" >&2
     else

@@ -30,11 +30,11 @@ const MARGIN: usize = 20;
 /// Height of the title, of the captions above the tiles, and of the remarks below.
 const TITLE: usize = 58;
 const CAPTIONS: usize = 44;
-const REMARKS: usize = 44;
+const REMARKS: usize = 66;
 const ROW_GAP: usize = 14;
 
-/// Draws the sheet of one sweep as a PNG file. Of more than [`MOST_COLUMNS`] settings the first ones are shown, and the rest is
-/// named in a remark.
+/// Draws the sheet of one sweep as a PNG file. Of more than [`MOST_COLUMNS`] settings some are shown, evenly from the first to
+/// the last, and the rest is named in a remark.
 ///
 /// # Errors
 ///
@@ -61,12 +61,8 @@ pub fn error_images(
 
     let mut sheet = Sheet::new(layout.width(), layout.height());
     let view = |image: &LinearImage| picture(image, images.white_w_m2, fit);
-    let first = [(0, view(&images.truth)?)];
-    let tiles = first.into_iter();
-    for (row, tile) in tiles {
-        let (x, y) = layout.spot(0, row);
-        sheet.lay(&tile, x, y);
-    }
+    let (x, y) = layout.spot(0, 0);
+    sheet.lay(&view(&images.truth)?, x, y);
     for (index, column) in columns.iter().enumerate() {
         let tiles = [
             view(column.image)?,
@@ -117,7 +113,18 @@ fn shown_images<'a>(
             sweep.dial, other.width, other.height, size.0, size.1
         )));
     }
-    Ok(found.iter().take(MOST_COLUMNS).collect())
+    let shown = shown_indices(found.len()).into_iter();
+    Ok(shown.map(|index| &found[index]).collect())
+}
+
+/// Which of so many settings are shown.
+fn shown_indices(count: usize) -> Vec<usize> {
+    if count <= MOST_COLUMNS {
+        return (0..count).collect();
+    }
+    (0..MOST_COLUMNS)
+        .map(|column| column * (count - 1) / (MOST_COLUMNS - 1))
+        .collect()
 }
 
 /// Errors of one image, value by value.
@@ -309,7 +316,7 @@ fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index:
         });
     };
     let left = MARGIN as f64;
-    let mut title = format!("Where {} errs", sweep.dial);
+    let mut title = format!("Errors by setting of {}", sweep.dial);
     if !study.scene.is_empty() {
         title += &format!(": {}", study.scene);
     }
@@ -321,9 +328,10 @@ fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index:
     let truth = format!("own error {}", words::percent(study.truth.relative_error));
     write("truth".to_owned(), (left, y + 8.0), strong, narrow);
     write(truth, (left, y + 28.0), soft, narrow);
-    let points = sweep.points.iter().take(MOST_COLUMNS);
-    for (index, point) in points.enumerate() {
-        let x = layout.spot(index + 1, 0).0 as f64;
+    let indices = shown_indices(sweep.points.len());
+    for (column, index) in indices.iter().enumerate() {
+        let point = &sweep.points[*index];
+        let x = layout.spot(column + 1, 0).0 as f64;
         let name = words::named_setting(sweep, point);
         let figures = format!(
             "L1 {} · {} ms",
@@ -335,14 +343,20 @@ fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index:
     }
 
     let y = (layout.height() - REMARKS) as f64;
-    let mut remark =
-        "Blue: too dark, red: too bright; stronger errors have the end's colour.".to_owned();
+    let mut remarks = vec![
+        "Blue: too dark, red: too bright.".to_owned(),
+        "Stronger errors have the colour of the scale's end.".to_owned(),
+    ];
     if sweep.points.len() > MOST_COLUMNS {
-        let rest: Vec<String> = sweep.points[MOST_COLUMNS..]
-            .iter()
-            .map(|point| words::setting(sweep, point))
+        let hidden = (0..sweep.points.len()).filter(|index| !indices.contains(index));
+        let rest: Vec<String> = hidden
+            .map(|index| words::setting(sweep, &sweep.points[index]))
             .collect();
-        remark = format!("Not shown, for lack of room: {}. {remark}", rest.join("; "));
+        let rest = rest.join("; ");
+        remarks.push(format!("Not shown, for lack of room: {rest}."));
     }
-    write(remark, (left, y + 16.0), soft, wide);
+    for (line, remark) in remarks.into_iter().enumerate() {
+        let spot = (left, y + 8.0 + 17.0 * line as f64);
+        write(remark, spot, soft, wide);
+    }
 }

@@ -16,7 +16,7 @@ const WHITE_W_M2: f64 = 1000.0;
 /// A lopsided caustic on a tinted floor, W/m².
 fn truth() -> LinearImage {
     let rgb = (0..PIXELS).map(|i| {
-        let (x, y) = ((i as u32 % SIZE) as f64, (i as u32 / SIZE) as f64);
+        let (x, y) = (f64::from(i as u32 % SIZE), f64::from(i as u32 / SIZE));
         let ridge = (-(x - 13.0 - 0.3 * y).powi(2) / 18.0).exp();
         let value = 400.0 + 1100.0 * ridge * (0.4 + y / 60.0);
         [0.7 * value, value, 0.9 * value]

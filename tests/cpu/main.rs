@@ -9,6 +9,7 @@
 mod accuracy_dial;
 mod accuracy_metrics;
 mod accuracy_plot;
+mod accuracy_report;
 mod cli;
 mod cli_program;
 mod cli_scene_file;

@@ -7,7 +7,8 @@ use super::axis::LogAxis;
 use super::canvas::{Canvas, Spot, Stroke, TextLook};
 use super::error::PlotError;
 use super::frame::{
-    BOTTOM, Column, Frame, LEFT, LINE, RIGHT, clipped, draw_floor, error_axis, floor_stroke,
+    BOTTOM, Column, Frame, LABEL, LEFT, LINE, RIGHT, UPRIGHT_LABEL, UPRIGHT_ROOM, clipped,
+    draw_floor, error_axis, floor_stroke,
 };
 use super::legend::{self, Entry, Sign};
 use super::marker;
@@ -134,25 +135,46 @@ impl Convergence<'_> {
             .collect();
         spots.sort_by(|a, b| a.0.total_cmp(&b.0));
         spots.dedup_by(|a, b| a.0 == b.0);
+        let upright = self.lacks_room(canvas)?;
         let mut columns = Vec::new();
         let mut free_from = f64::NEG_INFINITY;
         for (x, mark) in spots {
-            let room = match self.x {
-                DialAxis::Words(count) => (RIGHT - LEFT) / count as f64 - LABEL_GAP,
-                DialAxis::Numbers(_) => RIGHT - LEFT,
+            let (size, room) = if upright {
+                (UPRIGHT_LABEL, UPRIGHT_ROOM)
+            } else {
+                (LABEL, RIGHT - LEFT)
             };
-            let text = canvas.fitted(&mark.label, 13.0, room)?;
-            let half = 0.5 * canvas.text_width(&text, 13.0)?;
+            let text = canvas.fitted(&mark.label, size, room)?;
+            let half = if upright {
+                0.5 * size
+            } else {
+                0.5 * (canvas.text_width(&text, size)? + LABEL_GAP)
+            };
             let fits = x - half >= free_from;
             if fits {
-                free_from = x + half + LABEL_GAP;
+                free_from = x + half;
             }
             columns.push(Column {
                 x,
                 label: fits.then_some(text),
+                upright,
             });
         }
         Ok(columns)
+    }
+
+    /// Whether words are too wide to stand side by side.
+    fn lacks_room<DB: DrawingBackend>(&self, canvas: &Canvas<'_, DB>) -> Result<bool, PlotError> {
+        let DialAxis::Words(count) = self.x else {
+            return Ok(false);
+        };
+        let room = (RIGHT - LEFT) / count as f64 - LABEL_GAP;
+        for mark in &self.marks {
+            if canvas.text_width(&mark.label, LABEL)? > room {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     fn frame(&self, columns: Vec<Column>) -> Frame {

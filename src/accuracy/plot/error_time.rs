@@ -85,6 +85,7 @@ impl ErrorTime<'_> {
             label: tick
                 .labelled
                 .then(|| format!("{} ms", words::ms(tick.value))),
+            upright: false,
         });
         Frame {
             title: "Error against time".to_owned(),

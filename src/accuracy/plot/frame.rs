@@ -36,7 +36,15 @@ pub(super) struct Column {
     pub x: f64,
     /// Text below, where there is one.
     pub label: Option<String>,
+    /// Whether it reads upwards, for lack of room.
+    pub upright: bool,
 }
+
+/// Size of labels below the axis, and of those that read upwards, logical pixels.
+pub(super) const LABEL: f64 = 13.0;
+pub(super) const UPRIGHT_LABEL: f64 = 10.0;
+/// Room below the axis for those that read upwards, logical pixels.
+pub(super) const UPRIGHT_ROOM: f64 = 46.0;
 
 /// What stands around a plot.
 #[derive(Clone, Debug)]
@@ -74,7 +82,7 @@ impl Frame {
         canvas.line((LEFT, TOP), (LEFT, BOTTOM), axis)?;
         let middle = TextLook::new(14.0, INK).at(HPos::Center, VPos::Center);
         let x_title = canvas.fitted(&self.x_title, 14.0, RIGHT - LEFT)?;
-        let below = (0.5 * (LEFT + RIGHT), f64::from(HEIGHT) - 24.0);
+        let below = (0.5 * (LEFT + RIGHT), f64::from(HEIGHT) - 16.0);
         canvas.text(&x_title, below, middle)?;
         let upright = TextLook {
             upright: true,
@@ -104,13 +112,21 @@ impl Frame {
                 canvas.line((LEFT, y), (RIGHT, y), stroke(labelled))?;
             }
         }
-        let below = TextLook::new(13.0, INK).at(HPos::Center, VPos::Top);
+        let below = TextLook::new(LABEL, INK).at(HPos::Center, VPos::Top);
+        let upwards = TextLook {
+            upright: true,
+            ..TextLook::new(UPRIGHT_LABEL, INK).at(HPos::Right, VPos::Center)
+        };
         for column in &self.columns {
-            if let Some(label) = &column.label {
-                canvas.text(label, (column.x, BOTTOM + 10.0), below)?;
+            match &column.label {
+                Some(label) if column.upright => {
+                    canvas.text(label, (column.x, BOTTOM + 6.0), upwards)?;
+                }
+                Some(label) => canvas.text(label, (column.x, BOTTOM + 10.0), below)?,
+                None => {}
             }
         }
-        let beside = TextLook::new(13.0, INK).at(HPos::Right, VPos::Center);
+        let beside = TextLook::new(LABEL, INK).at(HPos::Right, VPos::Center);
         for tick in ticks.iter().filter(|t| t.labelled) {
             let spot = (LEFT - 10.0, self.y.at(tick.value));
             canvas.text(&percent(tick.value), spot, beside)?;

@@ -12,7 +12,7 @@ pub(super) const GLOSSARY: [(&str, &str); 14] = [
     ),
     (
         "L1",
-        "sum of all absolute differences from the truth, divided by the sum of the truth: the share of the light that is in the wrong place",
+        "sum of all absolute differences from the truth, divided by the sum of the truth: the mean error, in per cent of the truth's mean",
     ),
     (
         "p99",

@@ -34,8 +34,10 @@ pub fn to_markdown(study: &Study, links: &ReportLinks) -> String {
     let mut text = heading(study);
     text += "\n## In short\n\n";
     for sweep in &study.sweeps {
-        let sentences = conclusions(study, sweep).join(" ");
-        text += &format!("- **{}**: {}\n", escaped(&sweep.dial), escaped(&sentences));
+        text += &format!("- **{}**\n", escaped(&sweep.dial));
+        for sentence in conclusions(study, sweep) {
+            text += &format!("  - {}\n", escaped(&sentence));
+        }
     }
     if study.sweeps.is_empty() {
         text += "Nothing was measured.\n";
