@@ -175,7 +175,8 @@ fn a_tilted_plate_follows_the_cosine() {
 
 #[test]
 fn the_map_on_a_box_has_the_light_that_landed_on_it() {
-    let half = Vec3::new(0.4, 0.1, 0.3);
+    // Whole texels: 28 and 20 of them; too thin for its sides to take light.
+    let half = Vec3::new(0.4, 0.002, 0.4 * 20.0 / 28.0);
     let flat_or_not = [json!([]), waves()];
     for (wavy, waves) in flat_or_not.into_iter().enumerate() {
         let water = |v: &mut Value| {
@@ -188,7 +189,8 @@ fn the_map_on_a_box_has_the_light_that_landed_on_it() {
         });
         let map = find(&on_object, 4e-3);
         if wavy == 0 {
-            let expected = flat_water_irradiance(&on_object.scene.water, 0.9, &sun(&on_object, 0));
+            let expected =
+                flat_water_irradiance(&on_object.scene.water, 0.998, &sun(&on_object, 0));
             for value in [16 * 32 + 16, 10 * 32 + 20].map(|at| map.irradiance[at]) {
                 assert_near(value, expected, 2e-6);
             }
@@ -207,13 +209,11 @@ fn the_map_on_a_box_has_the_light_that_landed_on_it() {
             &|_| (),
         )
         .unwrap();
-        // The map is square; under a sun in the zenith its texels lie level. Texels on the rim whose middle misses the box
-        // hold no surface: what they would add is left out, so compare what is inside with a rim of one texel.
+        // Under a sun in the zenith the texels of the map lie level.
         let side = 2.0 * 0.4 * 32.0 / 28.0 / 32.0;
         let total: f64 = map.irradiance.iter().map(|e| e[1]).sum::<f64>() * side * side;
         let landed = counted.landed_w[1][1];
-        // Waves throw a little light at the box's sides, which no texel of this map shows.
-        assert!((total / landed - 1.0).abs() < 0.03, "{total} {landed}");
+        assert!((total / landed - 1.0).abs() < 2e-3, "{total} {landed}");
     }
 }
 
@@ -303,9 +303,15 @@ fn the_estimate_of_the_error_is_honest() {
         json!({ "kind": "irradiance_map", "receiver": 0 }),
     ] {
         let scene = scene(output);
-        let (short, long) = (find(&scene, 2e-2), find(&scene, 3e-3));
-        assert!(long.rays > 5 * short.rays);
-        assert!(short.relative_error <= 2e-2 && long.relative_error <= 3e-3);
+        let short = find(&scene, 2e-2);
+        let more = TruthSettings {
+            target_error: None,
+            max_rays: 20 * short.rays,
+            ..TruthSettings::default()
+        };
+        let long = truth(&scene, &more, &|_| (), &|| false).unwrap();
+        assert!(long.rays > 10 * short.rays && long.rays <= 22 * short.rays);
+        assert!(short.relative_error <= 2e-2 && long.relative_error < 0.5 * short.relative_error);
         let (mut difference, mut total) = (0.0, 0.0);
         for (a, b) in short
             .irradiance
@@ -411,4 +417,39 @@ fn questions_without_sense_are_errors() {
     let mut blind = good.clone();
     blind.scene.camera = None;
     assert!(ask(&blind, &settings(1e-2)).contains("no camera"));
+}
+
+#[test]
+fn zz_teapot() {
+    for error in [1e-2, 5e-3] {
+        let scene = crate::scene_files::load("teapot_pool", &[]);
+        let t = find(&scene, error);
+        println!(
+            "view {error}: {} points, {} rays, error {}, {} s",
+            t.irradiance.len(),
+            t.rays,
+            t.relative_error,
+            t.seconds
+        );
+        let scene = crate::scene_files::load(
+            "teapot_pool",
+            &[
+                ("/output", "{\"kind\":\"irradiance_map\",\"receiver\":0}"),
+                ("/quality/level_map_texels", "256"),
+            ],
+        );
+        let t = find(&scene, error);
+        println!(
+            "map {error}: {} texels, {} rays, error {}, {} s",
+            t.irradiance.len(),
+            t.rays,
+            t.relative_error,
+            t.seconds
+        );
+        let lit = t.compared.iter().filter(|c| **c).count();
+        println!(
+            "{lit} compared, shadow {}",
+            t.shadow.unwrap().iter().sum::<f64>()
+        );
+    }
 }
