@@ -44,7 +44,7 @@
 //! | [`level_map`] | the cache |
 //! | [`render`] | runs plans; self-check |
 //! | [`reference`] | float64 truth by plain rays: another algorithm, not a port |
-//! | [`accuracy`] | error metrics |
+//! | [`accuracy`] | error metrics, and what a study found: plots, pictures, reports |
 //! | [`image`] | PNG, EXR, tone curve |
 //! | [`jobs`] | bounded queue and the one GPU thread |
 //! | [`http`] | routes; the only place that knows status codes is its error table |
