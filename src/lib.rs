@@ -44,7 +44,7 @@
 //! | [`level_map`] | the cache |
 //! | [`render`] | runs plans; self-check |
 //! | [`reference`] | float64 truth by plain rays: another algorithm, not a port |
-//! | [`accuracy`] | error metrics |
+//! | [`accuracy`] | error of images, dials and their sweeps, plots and reports |
 //! | [`tuning`] | from a wanted error or time to dials |
 //! | [`image`] | PNG, EXR, tone curve |
 //! | [`jobs`] | bounded queue and the one GPU thread |

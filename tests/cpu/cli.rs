@@ -290,6 +290,7 @@ fn a_plan_reads_well() {
             holds: "height, m".to_owned(),
         }],
         peak_bytes: 1536,
+        chosen: None,
         warnings: Vec::new(),
     };
     assert_eq!(

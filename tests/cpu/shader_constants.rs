@@ -237,6 +237,7 @@ fn sums_over_texels_cover_all_of_them() {
 #[test]
 fn every_entry_point_is_run_by_a_step() {
     let facts = facts();
+    let coarse = facts.coarse();
     let level_box = facts.suns[0].boxes[0].clone().unwrap();
     for pass in passes::ALL {
         let run = match pass.repeat {
@@ -246,10 +247,11 @@ fn every_entry_point_is_run_by_a_step() {
                 first_triangle: 0,
                 triangles: 12,
             },
-            Repeat::Sun => Run::Sun {
+            Repeat::Sun | Repeat::CoarseSun => Run::Sun {
                 index: 0,
                 wide_sums: false,
             },
+            Repeat::Frame => Run::Frame { coarse: &coarse },
             Repeat::Band => Run::Band {
                 first_row: 0,
                 rows: 67,
