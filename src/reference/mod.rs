@@ -5,6 +5,7 @@
 //!
 //! - `truth`: one entry for every kind of output, and what it answers; `disk` keeps the answers;
 //! - `settings`: how long to count, and why a scene cannot be counted;
+//! - `checks`: figures that can be counted with, and the suns that count;
 //! - `place`: a scene in local coordinates, and where a ray meets the water;
 //! - `window`: the piece of water that can light a map;
 //! - `lattice`: where the rays start; `slanted`: the same in cells that fit a tilted receiver;
@@ -20,6 +21,7 @@
 //! objects stop light under the water only, not on its way to the water; light that is refracted upwards is lost.
 
 mod camera;
+mod checks;
 pub mod closed_form;
 mod disk;
 mod floor;
