@@ -1,4 +1,4 @@
-//! The float64 truth on the CPU: where sunlight lands on the floor, by counting plain rays, and in closed form.
+//! The float64 truth on the CPU: the light on floors, objects and what a camera sees, by counting plain rays, and in closed form.
 //!
 //! Nothing here is a port of a shader. The renderer carries flux in beams with exact coverage on a water grid; the reference
 //! refracts single rays and counts where they land. Both read the same scene, nothing else is shared.

@@ -426,7 +426,7 @@ fn plain_count(scene: &ResolvedScene, center_m: DVec3, normal: DVec3, side_m: f6
     let sun = sun(scene, 0);
     let l = direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians());
     let (u, v) = normal.any_orthonormal_pair();
-    let (cells, reach_m) = (1200, 1.0);
+    let (cells, reach_m) = (2400, 1.0);
     let cell_m = 2.0 * reach_m / f64::from(cells);
     let mut sum = 0.0;
     for j in 0..cells {
@@ -470,7 +470,7 @@ fn the_search_finds_all_light_on_tilted_squares() {
         let normal = DVec3::new(-sin, cos, 0.0);
         let center_m = DVec3::new(0.0, -1.0, 0.0) + normal * 0.01;
         let eye_m = center_m + normal * 0.3;
-        let side_m = 0.06;
+        let side_m = 0.12;
         let scene = pool(Vec3::new(0.3, 0.01, 0.3), |v| {
             v["objects"][0]["rotation"] = json!([0, 0, half_sin, half_cos]);
             v["water"]["waves"] = waves();
@@ -480,11 +480,18 @@ fn the_search_finds_all_light_on_tilted_squares() {
             v["camera"] = json!({ "kind": "orthographic", "position_m": eye_m.to_array(), "target_m": center_m.to_array(), "up": [0, 0, 1], "height_m": side_m });
             v["output"] = json!({ "kind": "view", "width": 1, "height": 1 });
         });
-        let got = find(&scene, 2e-3).irradiance[0][0];
+        // All rays at once: two halves of one value may be alike by chance.
+        let many = TruthSettings {
+            target_error: None,
+            max_rays: 1_000_000,
+            ..TruthSettings::default()
+        };
+        let got = truth(&scene, &many, &|_| (), &|| false).unwrap().irradiance[0][0];
         let expected = plain_count(&scene, center_m, normal, side_m);
         assert!(expected > 1.0, "{height} {tilt_deg}: {expected}");
         assert!(
-            (got / expected - 1.0).abs() < 0.02,
+            // Some 2000 plain rays hit the grazed square, ten times as many the others.
+            (got / expected - 1.0).abs() < if tilt_deg > 60.0 { 5e-3 } else { 5e-4 },
             "{height} {tilt_deg}: {got} {expected}"
         );
     }
