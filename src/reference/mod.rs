@@ -1,10 +1,11 @@
-//! The float64 truth on the CPU: where sunlight lands on the floor, by counting plain rays, and in closed form.
+//! The float64 truth on the CPU: the light on floors, objects and what a camera sees, by counting plain rays, and in closed form.
 //!
 //! Nothing here is a port of a shader. The renderer carries flux in beams with exact coverage on a water grid; the reference
 //! refracts single rays and counts where they land. Both read the same scene, nothing else is shared.
 //!
 //! - `truth`: one entry for every kind of output, and what it answers; `disk` keeps the answers;
 //! - `settings`: how long to count, and why a scene cannot be counted;
+//! - `checks`: figures that can be counted with, and the suns that count;
 //! - `place`: a scene in local coordinates, and where a ray meets the water;
 //! - `window`: the piece of water that can light a map;
 //! - `lattice`: where the rays start; `slanted`: the same in cells that fit a tilted receiver;
@@ -20,6 +21,7 @@
 //! objects stop light under the water only, not on its way to the water; light that is refracted upwards is lost.
 
 mod camera;
+mod checks;
 pub mod closed_form;
 mod disk;
 mod floor;

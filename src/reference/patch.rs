@@ -4,10 +4,13 @@
 //! apart the rays of a piece can land follows from the steepest slope and the strongest curvature of the waves, so nothing is
 //! lost. In what remains plain rays are counted.
 
+use std::f64::consts::SQRT_2;
+
 use glam::{DVec2, DVec3};
 
 use super::place::{Place, PlacedSun};
 use super::slanted::{Cells, halves, rows};
+use super::tally::add_to;
 use super::window::{LightWindow, Target, window_of};
 use crate::physics::attenuation::transmission;
 use crate::physics::fresnel::fresnel_transmittance;
@@ -17,7 +20,7 @@ use crate::waves::SurfacePoint;
 /// A piece of water is not quartered any more once its rays land this close together, in half sides of the square …
 const CLOSE: f64 = 0.5;
 /// … or once it holds so few rays that counting them is cheaper.
-const FEW_RAYS: f64 = 6.0;
+const FEW_RAYS: f64 = 4.0;
 /// Sides of the square within which its own object does not shade it: the square leaves the curved surface a little.
 const OWN_REACH: f64 = 2.0;
 
@@ -42,10 +45,8 @@ pub(super) struct Sunlight {
 
 impl Sunlight {
     pub(super) fn add(&mut self, other: &Self) {
-        for c in 0..3 {
-            self.lit[c] += other.lit[c];
-            self.stopped[c] += other.stopped[c];
-        }
+        add_to(&mut self.lit, &other.lit);
+        add_to(&mut self.stopped, &other.stopped);
     }
 }
 
@@ -89,6 +90,30 @@ impl Patch {
             min_m: self.center_m - reach_m,
             max_m: self.center_m + reach_m,
         }
+    }
+
+    /// Where rays land that start within `moved_m` of `from_m` and run within `turned` of unit `direction`.
+    ///
+    /// A ray from S lands at S + t D/μ with D = (S − P)·n and μ = −t·n: moving S by δS moves that by at most δS/μ, and since
+    /// t′/μ′ − t/μ = n × (t × t′)/(μμ′), turning t by δt moves it by at most |D| δt/(μμ′).
+    fn reach(&self, from_m: DVec3, moved_m: f64, direction: DVec3, turned: f64) -> Reach {
+        let above_m = (from_m - self.center_m).dot(self.normal);
+        let against = -direction.dot(self.normal);
+        if above_m + moved_m < 0.0 || against + turned <= 0.0 {
+            return Reach::Nothing;
+        }
+        if against - turned < 0.01 {
+            return Reach::Unknown;
+        }
+        let reach_m =
+            moved_m / against + (above_m.abs() + moved_m) * turned / (against * (against - turned));
+        let landed_m = from_m + direction * (above_m / against) - self.center_m;
+        let limit_m = self.half_m + reach_m;
+        let misses = |axis: &DVec3| axis.dot(landed_m).abs() > limit_m;
+        if self.across.iter().any(misses) {
+            return Reach::Nothing;
+        }
+        Reach::Within(reach_m)
     }
 
     fn cells(&self, flat: DVec3) -> Cells {
@@ -241,23 +266,15 @@ impl<'a> Search<'a> {
     /// What the rays of the piece around `st` can reach whose corners lie `radius_m` away.
     ///
     /// Within the piece the slope changes by at most the curvature times the radius, the unit normal by no more than that, and
-    /// the direction t = −l/η + g(c) n by at most (|g| + g′) of it; both g′ and |g| are largest at the smallest c. A ray from S
-    /// lands at S + t D/μ with D = (S − P)·n and μ = −t·n: moving S by δS moves that by at most δS/μ, and since
-    /// t′/μ′ − t/μ = n × (t × t′)/(μμ′), turning t by δt moves it by at most |D| δt/(μμ′).
+    /// the direction t = −l/η + g(c) n by at most (|g| + g′) of it; both g′ and |g| are largest at the smallest c.
     fn reach(&self, st: DVec2, radius_m: f64) -> Reach {
         let water_m = self.cells.water_m(st);
-        let place = self.place;
-        let SurfacePoint { height_m, slope } = place.facts.surface.at(water_m.x, water_m.y);
-        let from_m = DVec3::new(water_m.x, height_m, water_m.y);
-        let bend = (place.bend_per_m * radius_m).min(2.0 * place.steepest);
-        let moved_m = radius_m * place.steepest.min(slope.length() + bend).hypot(1.0);
-        let patch = self.patch;
-        let above_m = (from_m - patch.center_m).dot(patch.normal);
-        let corner_m = patch.half_m;
-        if above_m + moved_m < 0.0 {
-            return Reach::Nothing;
-        }
-        let normal = normal_from_slope(slope.x, slope.y);
+        let (at, bend_per_m) = self.place.curved(water_m, radius_m);
+        let from_m = DVec3::new(water_m.x, at.height_m, water_m.y);
+        let bend = (bend_per_m * radius_m).min(2.0 * self.place.steepest);
+        let steepest = self.place.steepest.min(at.slope.length() + bend);
+        let moved_m = radius_m * steepest.hypot(1.0);
+        let normal = normal_from_slope(at.slope.x, at.slope.y);
         let cosine = normal.dot(self.sun.to_light);
         if cosine + bend <= 0.0 {
             return Reach::Nothing;
@@ -265,7 +282,7 @@ impl<'a> Search<'a> {
         if cosine <= 0.0 {
             return Reach::Unknown;
         }
-        let ior = place.facts.ior;
+        let ior = self.place.facts.ior;
         let least = (cosine - bend).max(0.0);
         let cos_t = (1.0 - (1.0 - least * least) / (ior * ior))
             .max(1e-12)
@@ -273,25 +290,24 @@ impl<'a> Search<'a> {
         let turned =
             bend * (self.turn(least).abs() + (1.0 / ior - least / (ior * ior * cos_t)).max(0.0));
         let direction = -self.sun.to_light / ior + normal * self.turn(cosine);
-        let against = -direction.dot(patch.normal);
-        if against + turned <= 0.0 {
+        if self.misses_ball(from_m, moved_m, direction, turned) {
             return Reach::Nothing;
         }
-        if against - turned < 0.01 {
-            return Reach::Unknown;
+        self.patch.reach(from_m, moved_m, direction, turned)
+    }
+
+    /// Whether all rays that start within `moved_m` of `from_m` and run within `turned` of unit `direction` miss the ball around
+    /// the square: the unit vectors from one start to its middle and from another to any point of it differ by less than
+    /// 2ε/(2d − ε), with d the distance and ε the radius of the ball plus that of the starts.
+    fn misses_ball(&self, from_m: DVec3, moved_m: f64, direction: DVec3, turned: f64) -> bool {
+        let to_center_m = self.patch.center_m - from_m;
+        let distance_m = to_center_m.length();
+        let blur_m = moved_m + self.patch.half_m * SQRT_2;
+        if distance_m <= blur_m {
+            return false;
         }
-        let reach_m =
-            moved_m / against + (above_m.abs() + moved_m) * turned / (against * (against - turned));
-        let landed_m = from_m + direction * (above_m / against) - patch.center_m;
-        let limit_m = corner_m + reach_m;
-        if patch
-            .across
-            .iter()
-            .any(|axis| axis.dot(landed_m).abs() > limit_m)
-        {
-            return Reach::Nothing;
-        }
-        Reach::Within(reach_m)
+        let apart = (to_center_m / distance_m - direction).length();
+        apart > turned + 2.0 * blur_m / (2.0 * distance_m - blur_m)
     }
 
     /// Books the ray that enters at `water_m` if it crosses the square against its normal.

@@ -5,10 +5,11 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::ReferenceError;
-use super::map::{check_surface, check_water, suns};
+use super::checks::{check_surface, check_water, suns};
 use super::occluders::Occluders;
 use crate::physics::refraction::{direction_to_light, refract_direction};
 use crate::physics::sky::sky_irradiance;
+use crate::physics::turns::sin_cos_turns;
 use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
 use crate::waves::SurfacePoint;
@@ -23,6 +24,8 @@ pub(super) struct Place {
     pub(super) suns: Vec<PlacedSun>,
     /// Largest second derivative of the water's height along any direction, 1/m.
     pub(super) bend_per_m: f64,
+    /// Largest third derivative, 1/m².
+    pub(super) twist_per_m2: f64,
     /// Steepest slope that the water can have.
     pub(super) steepest: f64,
 }
@@ -59,19 +62,40 @@ impl Place {
                 })
             })
             .collect();
-        let bend_per_m = facts
-            .surface
-            .components
-            .iter()
-            .map(|c| c.amplitude_m * TAU * TAU * c.frequency_per_m.length_squared())
-            .sum();
+        let derivative = |order: i32| -> f64 {
+            let waves = facts.surface.components.iter();
+            waves
+                .map(|c| c.amplitude_m * (TAU * c.frequency_per_m.length()).powi(order))
+                .sum()
+        };
         Ok(Self {
             steepest: facts.surface.max_slope(),
+            bend_per_m: derivative(2),
+            twist_per_m2: derivative(3),
             facts,
             occluders,
             suns,
-            bend_per_m,
         })
+    }
+
+    /// Height and slope at `water_m`, and the largest second derivative along any direction within `radius_m`, 1/m.
+    pub(super) fn curved(&self, water_m: DVec2, radius_m: f64) -> (SurfacePoint, f64) {
+        let (mut height_m, mut slope) = (0.0, DVec2::ZERO);
+        let (mut xx, mut xz, mut zz) = (0.0, 0.0, 0.0);
+        for c in &self.facts.surface.components {
+            let (sin, cos) = sin_cos_turns(water_m.dot(c.frequency_per_m) + c.phase_turns);
+            let k = c.frequency_per_m * TAU;
+            let high_m = c.amplitude_m * sin;
+            height_m += high_m;
+            slope += k * (c.amplitude_m * cos);
+            xx -= high_m * k.x * k.x;
+            xz -= high_m * k.x * k.y;
+            zz -= high_m * k.y * k.y;
+        }
+        // The larger eigenvalue of a symmetric matrix, by magnitude.
+        let here = (0.5 * (xx + zz)).abs() + (0.5 * (xx - zz)).hypot(xz);
+        let bend_per_m = self.bend_per_m.min(here + self.twist_per_m2 * radius_m);
+        (SurfacePoint { height_m, slope }, bend_per_m)
     }
 
     /// Height of `p_m` over the water.

@@ -70,7 +70,7 @@ impl TruthSettings {
         ReferenceSettings {
             target_error: self.target_error,
             max_rays: self.max_rays,
-            ..ReferenceSettings::default()
+            initial_rays: 1 << 20,
         }
     }
 

@@ -7,9 +7,9 @@ use glam::{DMat2, DVec2, DVec3};
 use super::lattice::{Lattice, Row, SECOND_HALF, uniform};
 use super::window::LightWindow;
 
-/// Least area of a cell, as a share of the texel's, before the texel is taken to lie flat: light that only grazes a receiver
-/// under flat water may still strike it under waves.
-const LEAST_AREA: f64 = 0.02;
+/// Least area of a cell as a share of the texel's: light that only grazes a receiver under flat water may still strike it under
+/// waves, and needs no finer cells than elsewhere.
+const LEAST_AREA: f64 = 0.25;
 
 /// The cells: water at (x, z) = `origin_m` + `basis_m` (s, t) with whole numbers of s and t on their edges.
 #[derive(Clone, Copy, Debug)]

@@ -104,7 +104,7 @@ fn widen(
 
 /// Finds the truth, or reads it from `settings.disk`.
 ///
-/// It is what [`crate::render::Renderer`] should answer for the same scene, found by counting plain rays in f64: texels of maps
+/// It is what a renderer should answer for the same scene, found by counting plain rays in f64: texels of maps
 /// are means over the texel; a point of a view is the mean over its pixel's footprint. Dials have no say in it, except that
 /// `quality.level_map_texels` is the size of an object's map. The bits do not depend on the number of threads. `progress` hears
 /// the finished part, 0 … 1, from any thread; `cancelled` is asked often, from any thread.

@@ -9,6 +9,7 @@ use super::camera::{ViewPoint, Viewer};
 use super::map::{MOST_GROWTH, ORDER, half_difference, mean, share};
 use super::patch::{Patch, Search, Sunlight};
 use super::place::Place;
+use super::tally::add_to;
 use super::{ReferenceError, Truth, TruthKind, TruthSettings};
 use crate::scene::{Output, ResolvedScene};
 
@@ -128,9 +129,7 @@ fn lit(place: &Place, point: ViewPoint) -> Lit {
     if point.dry {
         let suns = suns_in_air(place, &point);
         stopped = suns.stopped;
-        for c in 0..3 {
-            known[c] += suns.lit[c];
-        }
+        add_to(&mut known, &suns.lit);
     }
     Lit {
         point,
@@ -158,9 +157,7 @@ fn suns_in_air(place: &Place, point: &ViewPoint) -> Sunlight {
         } else {
             &mut sum.lit
         };
-        for c in 0..3 {
-            target[c] += sun.irradiance_w_m2[c] * cosine;
-        }
+        add_to(target, &sun.irradiance_w_m2.map(|e| e * cosine));
     }
     sum
 }
@@ -181,25 +178,11 @@ fn rounds(
     let mut work = 0.0;
     loop {
         let planned = work + per_patch;
-        let done = AtomicU64::new(0);
-        let counted: Vec<Counted> = points
-            .par_iter()
-            .enumerate()
-            .map(|(index, lit)| {
-                let result = match lit {
-                    Some(lit) if !lit.point.dry && !cancelled() => {
-                        count_point(place, &lit.patch, per_patch, index)
-                    }
-                    _ => Counted::default(),
-                };
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                let part = done as f64 / points.len() as f64;
-                if last {
-                    progress(((work + part * per_patch) / planned).min(1.0));
-                }
-                result
-            })
-            .collect();
+        let counted = round(place, points, per_patch, cancelled, &|part| {
+            if last {
+                progress(((work + part * per_patch) / planned).min(1.0));
+            }
+        });
         if cancelled() {
             return Err(ReferenceError::Cancelled);
         }
@@ -225,6 +208,31 @@ fn rounds(
         last = growth >= room;
         per_patch *= growth.min(room);
     }
+}
+
+/// Counts every point once, about `per_patch` rays per evenly lit footprint and half.
+fn round(
+    place: &Place,
+    points: &[Option<Lit>],
+    per_patch: f64,
+    cancelled: &(dyn Fn() -> bool + Sync),
+    progress: &(dyn Fn(f64) + Sync),
+) -> Vec<Counted> {
+    let done = AtomicU64::new(0);
+    let indexed = points.par_iter().enumerate();
+    indexed
+        .map(|(index, lit)| {
+            let result = match lit {
+                Some(lit) if !lit.point.dry && !cancelled() => {
+                    count_point(place, &lit.patch, per_patch, index)
+                }
+                _ => Counted::default(),
+            };
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress(done as f64 / points.len() as f64);
+            result
+        })
+        .collect()
 }
 
 /// All suns on one square.

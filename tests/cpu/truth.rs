@@ -10,6 +10,7 @@ use caustica::reference::{
     ReferenceError, ReferenceSettings, Truth, TruthKind, TruthSettings, irradiance_map, truth,
 };
 use caustica::scene::{Light, ResolvedScene, Sun};
+use caustica::waves::WaterSurface;
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
@@ -419,37 +420,120 @@ fn questions_without_sense_are_errors() {
     assert!(ask(&blind, &settings(1e-2)).contains("no camera"));
 }
 
+/// Plain rays, one in each cell of a fine grid, with the functions of `physics` only: the irradiance of a square.
+fn plain_count(scene: &ResolvedScene, center_m: DVec3, normal: DVec3, side_m: f64) -> f64 {
+    let surface = WaterSurface::of(&scene.scene);
+    let sun = sun(scene, 0);
+    let l = direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians());
+    let (u, v) = normal.any_orthonormal_pair();
+    let (cells, reach_m) = (2400, 1.0);
+    let cell_m = 2.0 * reach_m / f64::from(cells);
+    let mut sum = 0.0;
+    for j in 0..cells {
+        for i in 0..cells {
+            let jitter = |n: u32| (f64::from(n) * 0.618_033_988_749_895).fract();
+            let x = (f64::from(i) + jitter(i + 7 * j)) * cell_m - reach_m + center_m.x + 0.4;
+            let z = (f64::from(j) + jitter(5 * i + 3 * j)) * cell_m - reach_m + center_m.z + 0.2;
+            let at = surface.at(x, z);
+            let n = caustica::waves::normal(at);
+            let cos_i = n.dot(l);
+            let Some(t) = refract_direction(-l, n, 1.333) else {
+                continue;
+            };
+            let from_m = DVec3::new(x, at.height_m, z);
+            let path_m = (center_m - from_m).dot(normal) / t.dot(normal);
+            let off_m = from_m + t * path_m - center_m;
+            if t.dot(normal) < 0.0
+                && off_m.dot(u).abs() <= 0.5 * side_m
+                && off_m.dot(v).abs() <= 0.5 * side_m
+            {
+                let entered = cos_i.max(0.0) / n.y * fresnel_transmittance(cos_i, 1.333);
+                sum += entered * (-0.3 * path_m).exp();
+            }
+        }
+    }
+    sum * cell_m * cell_m / (side_m * side_m) * sun.irradiance_w_m2[0]
+}
+
 #[test]
-fn zz_teapot() {
-    for error in [1e-2, 5e-3] {
-        let scene = crate::scene_files::load("teapot_pool", &[]);
-        let t = find(&scene, error);
-        println!(
-            "view {error}: {} points, {} rays, error {}, {} s",
-            t.irradiance.len(),
-            t.rays,
-            t.relative_error,
-            t.seconds
-        );
-        let scene = crate::scene_files::load(
-            "teapot_pool",
-            &[
-                ("/output", "{\"kind\":\"irradiance_map\",\"receiver\":0}"),
-                ("/quality/level_map_texels", "256"),
-            ],
-        );
-        let t = find(&scene, error);
-        println!(
-            "map {error}: {} texels, {} rays, error {}, {} s",
-            t.irradiance.len(),
-            t.rays,
-            t.relative_error,
-            t.seconds
-        );
-        let lit = t.compared.iter().filter(|c| **c).count();
-        println!(
-            "{lit} compared, shadow {}",
-            t.shadow.unwrap().iter().sum::<f64>()
+fn the_search_finds_all_light_on_tilted_squares() {
+    // From gentle to steep water; a plate that faces the light, one that lies level, and one that is grazed.
+    for (height, tilt_deg) in [
+        (1.0, 0.0f64),
+        (1.0, -30.0),
+        (2.0, 50.0),
+        (2.0, 62.0),
+        (3.0, -15.0),
+    ] {
+        let (sin, cos) = tilt_deg.to_radians().sin_cos();
+        let (half_sin, half_cos) = (tilt_deg.to_radians() / 2.0).sin_cos();
+        let normal = DVec3::new(-sin, cos, 0.0);
+        let center_m = DVec3::new(0.0, -1.0, 0.0) + normal * 0.01;
+        let eye_m = center_m + normal * 0.3;
+        let side_m = 0.12;
+        let scene = pool(Vec3::new(0.3, 0.01, 0.3), |v| {
+            v["objects"][0]["rotation"] = json!([0, 0, half_sin, half_cos]);
+            v["water"]["waves"] = waves();
+            for wave in v["water"]["waves"].as_array_mut().unwrap() {
+                wave["amplitude_m"] = json!(wave["amplitude_m"].as_f64().unwrap() * height);
+            }
+            v["camera"] = json!({ "kind": "orthographic", "position_m": eye_m.to_array(), "target_m": center_m.to_array(), "up": [0, 0, 1], "height_m": side_m });
+            v["output"] = json!({ "kind": "view", "width": 1, "height": 1 });
+        });
+        // All rays at once: two halves of one value may be alike by chance.
+        let many = TruthSettings {
+            target_error: None,
+            max_rays: 1_000_000,
+            ..TruthSettings::default()
+        };
+        let got = truth(&scene, &many, &|_| (), &|| false).unwrap().irradiance[0][0];
+        let expected = plain_count(&scene, center_m, normal, side_m);
+        assert!(expected > 1.0, "{height} {tilt_deg}: {expected}");
+        assert!(
+            // Some 2000 plain rays hit the grazed square, ten times as many the others.
+            (got / expected - 1.0).abs() < if tilt_deg > 60.0 { 5e-3 } else { 5e-4 },
+            "{height} {tilt_deg}: {got} {expected}"
         );
     }
+}
+
+#[test]
+fn shadow_edges_are_where_the_shadow_changes() {
+    let mut truth = Truth {
+        kind: TruthKind::FloorMap,
+        width: 7,
+        height: 3,
+        first_pixel: [0, 0],
+        pixel_step: 1,
+        irradiance: vec![[0.0; 3]; 21],
+        compared: vec![true; 21],
+        relative_error: 0.0,
+        rays: 0,
+        shadow: None,
+        seconds: 0.0,
+        from_disk: false,
+    };
+    assert_eq!(truth.shadow_edge(1), None);
+    let mut shadow = vec![0.0; 21];
+    shadow[7] = 1.0; // first of the middle row
+    truth.shadow = Some(shadow);
+    let picture = |edge: Vec<bool>| -> Vec<String> {
+        let row = |row: &[bool]| row.iter().map(|&e| if e { '#' } else { '.' }).collect();
+        edge.chunks(7).map(row).collect()
+    };
+    assert_eq!(
+        picture(truth.shadow_edge(0).unwrap()),
+        ["#......", "##.....", "#......"]
+    );
+    assert_eq!(
+        picture(truth.shadow_edge(1).unwrap()),
+        ["###....", "###....", "###...."]
+    );
+    truth.shadow = Some([vec![0.01; 10], vec![0.4], vec![0.01; 10]].concat());
+    assert_eq!(
+        picture(truth.shadow_edge(0).unwrap()),
+        [".......", "...#...", "......."]
+    );
+    truth.compared[10] = false;
+    assert_eq!(picture(truth.shadow_edge(2).unwrap()), ["......."; 3]);
 }

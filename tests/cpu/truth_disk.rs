@@ -44,7 +44,7 @@ fn a_truth_is_found_again() {
         first
     );
     // A better one is asked for: counted, and kept instead.
-    let better = ask(&scene, &folder, first.relative_error * 0.1);
+    let better = ask(&scene, &folder, first.relative_error * 0.3);
     assert!(!better.from_disk && better.relative_error < first.relative_error);
     assert!(ask(&scene, &folder, 0.05).relative_error == better.relative_error);
     assert_eq!(files(&folder).len(), 1, "one file, no left-overs");
@@ -80,7 +80,7 @@ fn damaged_and_foreign_files_are_not_believed() {
         let again = ask(&scene, &folder.0, 0.05);
         assert!(!again.from_disk);
         assert_eq!(again.irradiance, first.irradiance);
-        assert_eq!(std::fs::read(&file).unwrap().len(), good.len(), "mended");
+        assert!(ask(&scene, &folder.0, 0.05).from_disk, "mended");
     }
     // A whole file of another question under this name.
     scene.scene.time_s = 2.0;

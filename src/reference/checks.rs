@@ -1,0 +1,66 @@
+//! Figures that can be counted with, and the suns that count.
+
+use super::ReferenceError;
+use crate::scene::{Light, Output, Scene, Sun, Water};
+use crate::waves::WaterSurface;
+
+/// The extinction of a water that can be counted in, 1/m.
+pub(super) fn check_water(water: &Water) -> Result<[f64; 3], ReferenceError> {
+    let mut extinction_per_m = [0.0; 3];
+    for (c, extinction) in extinction_per_m.iter_mut().enumerate() {
+        *extinction = water.absorption_per_m[c] + water.scattering_per_m[c];
+        check("water extinction (a + b), 1/m", *extinction, 0.0, f64::MAX)?;
+    }
+    check("water.ior", water.ior, 1.0, f64::MAX)?;
+    Ok(extinction_per_m)
+}
+
+/// Refuses waves that are no numbers.
+pub(super) fn check_surface(surface: &WaterSurface) -> Result<(), ReferenceError> {
+    let height_m = surface.max_height_m();
+    check("the waves' height, m", height_m, f64::MIN, f64::MAX)?;
+    check("the waves' slope", surface.max_slope(), f64::MIN, f64::MAX)
+}
+
+fn check(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), ReferenceError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(ReferenceError::Figure {
+        what,
+        value,
+        accepted: "a finite number in the range of the scene format is accepted",
+    })
+}
+
+/// The suns that shine into the water of `scene`.
+pub(super) fn suns(scene: &Scene) -> Result<Vec<&Sun>, ReferenceError> {
+    let only = match &scene.output {
+        Output::IrradianceMap(output) => output.light,
+        Output::View(_) => None,
+    };
+    if let Some(index) = only
+        && !matches!(scene.lights.get(index as usize), Some(Light::Sun(_)))
+    {
+        return Err(ReferenceError::NotASun {
+            index,
+            lights: scene.lights.len(),
+        });
+    }
+    let mut suns = Vec::new();
+    for (index, light) in scene.lights.iter().enumerate() {
+        if let Light::Sun(sun) = light
+            && only.is_none_or(|only| only as usize == index)
+        {
+            check("a sun's elevation_deg", sun.elevation_deg, -90.0, 90.0)?;
+            check("a sun's azimuth_deg", sun.azimuth_deg, f64::MIN, f64::MAX)?;
+            for irradiance in sun.irradiance_w_m2 {
+                check("a sun's irradiance_w_m2", irradiance, 0.0, f64::MAX)?;
+            }
+            if sun.elevation_deg > 0.0 {
+                suns.push(sun);
+            }
+        }
+    }
+    Ok(suns)
+}
