@@ -372,9 +372,10 @@ pub struct Quality {
     #[serde(deserialize_with = "integer::<LevelMapTexels, _>")]
     #[schema(minimum = 16, maximum = 2048)]
     pub level_map_texels: u32,
-    /// How often beams that straddle receivers are halved, 0 … 4. Default 2.
+    /// How often beams that straddle receivers are halved, 0 … 8. Default 2. Only the parts that still straddle are halved on, so
+    /// each further level about doubles the time for shadow edges and halves their width.
     #[serde(deserialize_with = "integer::<SplitLevels, _>")]
-    #[schema(minimum = 0, maximum = 4)]
+    #[schema(minimum = 0, maximum = 8)]
     pub split_levels: u32,
     /// Rays per pixel of a view along each side, 1 … 8. Default 1. Smooths edges; the camera's passes cost its square. Layers
     /// other than radiance are never averaged: they are those of the pixel's middle.

@@ -131,7 +131,7 @@ fn ranges() -> Vec<RangeRow> {
             [16.0, 2048.0],
             both(15.0, 2049.0),
         ),
-        ("/quality/split_levels", [0.0, 4.0], [None, Some(5.0)]),
+        ("/quality/split_levels", [0.0, 8.0], [None, Some(9.0)]),
         ("/quality/pixel_samples", [1.0, 8.0], both(0.0, 9.0)),
         ("/output/width", [1.0, 16_384.0], both(0.0, 16_385.0)),
         ("/output/height", [1.0, 16_384.0], both(0.0, 16_385.0)),

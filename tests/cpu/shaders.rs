@@ -13,7 +13,15 @@ use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Va
 /// Storage buffers that every WebGPU device can bind to one stage.
 const BASELINE_STORAGE_BUFFERS: usize = 8;
 /// Uniform variables that steps bring along.
-const UNIFORMS: [&str; 6] = ["light", "view", "level_map_view", "resolve", "span", "suns"];
+const UNIFORMS: [&str; 7] = [
+    "light",
+    "split",
+    "view",
+    "level_map_view",
+    "resolve",
+    "span",
+    "suns",
+];
 /// Textures that the executor draws into.
 const TEXTURES: [&str; 3] = ["front_depth", "back_depth", "front_normal"];
 
