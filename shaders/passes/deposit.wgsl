@@ -18,8 +18,8 @@
 
 fn push_split(beam_index: u32) {
     let slot = atomicAdd(&split_queue[QUEUE_COUNT], 1u);
-    atomicStore(&split_queue[QUEUE_HEAD + slot], beam_index);
-    atomicMax(&split_queue[0], min(slot + 1u, MOST_GROUPS));
+    atomicStore(&split_queue[SPLIT_HEAD + slot], beam_index);
+    atomicMax(&split_queue[0], min(slot / SPLIT_GROUP + 1u, MOST_GROUPS));
 }
 
 fn push_wide(beam_index: u32) {
@@ -40,8 +40,9 @@ fn deposit_beam(cell: vec2u, half: u32) -> CellSums {
     let beam_index = 2u * (cell.y * light.cells + cell.x) + half;
     if b.transmitted_m2 == 0.0 { return sums; }
     if !is_whole(b) {
+        // Its parts are accounted for where they are followed: their surface is not quite the beam's.
         push_split(beam_index);
-        return sums;
+        return CellSums(0.0, 0.0, sums.losses);
     }
     if b.receiver.x == NO_RECEIVER {
         sums.losses.missed = b.transmitted_m2;

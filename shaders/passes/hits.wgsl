@@ -4,6 +4,8 @@
 #import "shared/receivers.wgsl"
 #import "shared/floor_distance.wgsl"
 #import "shared/level_maps.wgsl"
+#import "shared/normals.wgsl"
+#import "shared/geometry.wgsl"
 #import "shared/trace_light.wgsl"
 
 @group(0) @binding(8) var<storage, read> surface: array<vec4f>;

@@ -1,7 +1,9 @@
 // Level map pyramid — the drawn map goes into the arena, and each level above holds the least front and the largest back of four.
+// Texels where the mesh ends or steps in depth are marked: there rays are tried against the mesh itself.
 #import "shared/level_map_view.wgsl"
 
 const EMPTY_DEPTH: f32 = 1e30;
+const EDGE_MARK: u32 = 1u;
 
 @group(0) @binding(2) var<storage, read_write> level_maps: array<u32>;
 @group(0) @binding(23) var front_depth: texture_2d<f32>;
@@ -29,6 +31,28 @@ fn closed_back(texel: vec2i, front: f32, back: f32) -> f32 {
     return deepest;
 }
 
+// Whether the mesh ends or steps in depth at this texel or beside it: what a ray meets here depends on where in the texel it goes.
+fn is_edge(texel: vec2i, front: f32) -> bool {
+    let reach = CONNECTED_STEP / length(level_map_view.u_row.xyz);
+    for (var i = 0; i < 9; i++) {
+        let neighbour = texel + vec2i(i % 3, i / 3) - 1;
+        var other = EMPTY_DEPTH;
+        if all(neighbour >= vec2i(0)) && all(neighbour < vec2i(i32(level_map_view.texels))) {
+            other = textureLoad(front_depth, neighbour, 0).x;
+        }
+        if abs(other - front) > reach { return true; }
+    }
+    return false;
+}
+
+// The word of a back depth with the edge's mark in its last bit; depths without the mark are rounded down the light, so that a
+// sheet does not get behind itself.
+fn marked(back: f32, edge: bool) -> u32 {
+    let word = bitcast<u32>(back);
+    if edge { return word | EDGE_MARK; }
+    return select(word & ~EDGE_MARK, word + (word & EDGE_MARK), back >= 0.0);
+}
+
 @compute @workgroup_size(8, 8)
 fn pyramid_store(@builtin(global_invocation_id) id: vec3u) {
     let texels = level_map_view.texels;
@@ -38,7 +62,8 @@ fn pyramid_store(@builtin(global_invocation_id) id: vec3u) {
     let back = textureLoad(back_depth, vec2i(id.xy), 0).x;
     let word = level_map_view.target_offset + 2u * at;
     level_maps[word] = bitcast<u32>(front);
-    level_maps[word + 1u] = bitcast<u32>(select(closed_back(vec2i(id.xy), front, back), -EMPTY_DEPTH, front >= EMPTY_DEPTH));
+    let deepest = select(closed_back(vec2i(id.xy), front, back), -EMPTY_DEPTH, front >= EMPTY_DEPTH);
+    level_maps[word + 1u] = marked(deepest, is_edge(vec2i(id.xy), front));
     level_maps[level_map_view.source_offset + at] = textureLoad(front_normal, vec2i(id.xy), 0).x;
 }
 
@@ -48,9 +73,13 @@ fn pyramid_halve(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= side || id.y >= side { return; }
     var front = EMPTY_DEPTH;
     var back = -EMPTY_DEPTH;
-    for (var i = 0u; i < 4u; i++) {
-        let child = 2u * id.xy + vec2u(i & 1u, i >> 1u);
-        let word = level_map_view.source_offset + 2u * (child.y * side * 2u + child.x);
+    // The first halving takes in one texel around the four: a mesh reaches beyond the texels whose middle it covers.
+    let rim = select(0, 1, level_map_view.level == 1u);
+    let across = 2 + 2 * rim;
+    for (var i = 0; i < across * across; i++) {
+        let child = 2 * vec2i(id.xy) - rim + vec2i(i % across, i / across);
+        if any(child < vec2i(0)) || any(child >= vec2i(2 * i32(side))) { continue; }
+        let word = level_map_view.source_offset + 2u * (u32(child.y) * side * 2u + u32(child.x));
         front = min(front, bitcast<f32>(level_maps[word]));
         back = max(back, bitcast<f32>(level_maps[word + 1u]));
     }

@@ -1,5 +1,6 @@
-// Split — beams whose corners end on different receivers are halved `split_levels` times along each side, with rays of their
-// own. Workgroups stride over the straddling beams of the grid.
+// Split — one halving of the beams whose corners end on different receivers: three more rays make four parts of each; parts that
+// end on one receiver are laid there, parts that still straddle are queued for the next halving, and after the last one torn.
+// One invocation per queued beam or part.
 #import "lib/turns.wgsl"
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
@@ -10,6 +11,8 @@
 #import "shared/receivers.wgsl"
 #import "shared/floor_distance.wgsl"
 #import "shared/level_maps.wgsl"
+#import "shared/normals.wgsl"
+#import "shared/geometry.wgsl"
 #import "shared/trace_light.wgsl"
 #import "shared/flux.wgsl"
 #import "shared/footprint.wgsl"
@@ -18,62 +21,153 @@
 #import "shared/account.wgsl"
 #import "shared/queue.wgsl"
 
-@group(0) @binding(6) var<storage, read> split_queue: array<u32>;
-
-// Corner `k` of the beam, in cells.
-fn beam_corner(cell: vec2u, half: u32, k: u32) -> vec2f {
-    return vec2f(cell + corner_of(beam_corners(cell, half), k));
+struct Split {
+    level: u32,        // halvings that the parts made here have behind them; 0: beams are taken as they are
+    source: u32,       // first word of what is to be halved
+    destination: u32,  // first word of what is left for the next level
+    capacity: u32,     // parts that fit there
 }
 
-fn split_beam(corners: mat3x2f) -> Beam {
+@group(0) @binding(6) var<storage, read_write> split_queue: array<atomic<u32>>;
+@group(0) @binding(7) var<uniform> split: Split;
+
+// Share of the depth between two points by which the depth half way may differ from the mean on a smooth piece; at a step: 0.5.
+const SMOOTH_SHARE: f32 = 0.25;
+
+// A ray's start and end.
+struct Corner {
+    origin: vec3f,
+    direction: vec3f,
+    transmittance: f32,
+    hit: Hit,
+}
+
+fn corner_at(cells: vec2f) -> Corner {
+    var c: Corner;
+    let xz = vertex_m(cells);
+    let water = water_surface_at(xz, light.wave_count);
+    let normal = normal_from_slope(water.y, water.z);
+    c.origin = vec3f(xz.x, water.x, xz.y);
+    c.direction = refract_direction(-light.to_light.xyz, normal, light.ior).xyz;
+    c.transmittance = fresnel_transmittance(dot(normal, light.to_light.xyz), light.ior);
+    c.hit = trace_light(c.origin, c.direction, light.receiver_count, light.has_floor == 1u);
+    return c;
+}
+
+// Corners, in cells, of a part of a beam: each halving takes the part at one of the corners (0 … 2) or the middle one (3), a bit
+// pair each, the first halving's highest. Fractions are dyadic, so that neighbours get the same corners to the bit.
+fn part_corners(beam_index: u32, path: u32, level: u32) -> mat3x2f {
+    let cell_index = beam_index >> 1u;
+    let cell = vec2u(cell_index % light.cells, cell_index / light.cells);
+    let corners = beam_corners(cell, beam_index & 1u);
+    var c = mat3x2f(
+        vec2f(cell + corner_of(corners, 0u)),
+        vec2f(cell + corner_of(corners, 1u)),
+        vec2f(cell + corner_of(corners, 2u)));
+    for (var l = level; l > 0u; l--) {
+        let k = (path >> (2u * l - 2u)) & 3u;
+        let sum = c[0] + c[1] + c[2];
+        if k == 3u {
+            c = mat3x2f((sum - c[0]) * 0.5, (sum - c[1]) * 0.5, (sum - c[2]) * 0.5);
+        } else {
+            let kept = select(select(c[0], c[1], k == 1u), c[2], k == 2u);
+            c = mat3x2f((c[0] + kept) * 0.5, (c[1] + kept) * 0.5, (c[2] + kept) * 0.5);
+        }
+    }
+    return c;
+}
+
+// Which of the six points (three corners, then the middles of the sides opposite to them) is corner `j` of part `k`.
+fn point_of(k: u32, j: u32) -> u32 {
+    if split.level == 0u { return j; }
+    if k == 3u { return 3u + j; }
+    return select(6u - j - k, k, j == k);
+}
+
+fn part_of(points: ptr<function, array<Corner, 6>>, k: u32) -> Beam {
     var b: Beam;
     var transmittance = 0.0;
-    for (var k = 0; k < 3; k++) {
-        let xz = vertex_m(corners[k]);
-        let water = water_surface_at(xz, light.wave_count);
-        let normal = normal_from_slope(water.y, water.z);
-        b.origin[k] = vec3f(xz.x, water.x, xz.y);
-        b.direction[k] = refract_direction(-light.to_light.xyz, normal, light.ior).xyz;
-        transmittance += fresnel_transmittance(dot(normal, light.to_light.xyz), light.ior);
-        let hit = trace_light(b.origin[k], b.direction[k], light.receiver_count, light.has_floor == 1u);
-        b.uv[k] = hit.uv;
-        b.t[k] = hit.t;
-        b.receiver[k] = hit.receiver;
+    for (var j = 0u; j < 3u; j++) {
+        let c = (*points)[point_of(k, j)];
+        b.origin[j] = c.origin;
+        b.direction[j] = c.direction;
+        b.uv[j] = c.hit.uv;
+        b.t[j] = c.hit.t;
+        b.receiver[j] = c.hit.receiver;
+        transmittance += c.transmittance;
     }
     b.flux_m2 = triangle_flux_m2(b.origin[0], b.origin[1], b.origin[2]);
     b.transmitted_m2 = b.flux_m2 * (transmittance / 3.0);
     return b;
 }
 
-// One of the small triangles of a beam.
-fn split_part(cell: vec2u, half: u32, n: u32) -> Losses {
-    let side = 1u << light.split_levels;
-    let c0 = beam_corner(cell, half, 0u);
-    let e1 = (beam_corner(cell, half, 1u) - c0) / f32(side);
-    let e2 = (beam_corner(cell, half, 2u) - c0) / f32(side);
-    // Row r of the divided triangle holds 2 (side − r) − 1 small ones; n counts them through: n = r (2 side − r) + k.
-    let row = side - 1u - u32(floor(sqrt(f32(side * side - 1u - n) + 0.5)));
-    let k = n - row * (2u * side - row);
-    let base = c0 + e1 * f32(k >> 1u) + e2 * f32(row);
-    var corners = mat3x2f(base, base + e1, base + e2);
-    if (k & 1u) == 1u { corners = mat3x2f(base + e1, base + e1 + e2, base + e2); }
-    let b = split_beam(corners);
-    if b.transmitted_m2 == 0.0 { return Losses(0.0, vec3f(0.0), vec3f(0.0)); }
-    if !is_whole(b) { return deposit_torn(b); }
-    if b.receiver.x == NO_RECEIVER { return Losses(b.transmitted_m2, vec3f(0.0), vec3f(0.0)); }
-    return deposit_whole(b);
+fn push_part(beam_index: u32, path: u32) {
+    let slot = atomicAdd(&split_queue[QUEUE_COUNT + split.level], 1u);
+    let word = split.destination + 2u * slot;
+    atomicStore(&split_queue[word], beam_index);
+    atomicStore(&split_queue[word + 1u], path);
+    atomicMax(&split_queue[0], min(slot / SPLIT_GROUP + 1u, MOST_GROUPS));
+}
+
+// Whether all six points lie on one smooth piece of a mesh: half way along each side the depth is about half way too. What a step
+// crosses has its middle as deep as one end. A steep face is told from a step by this at the first halving, by its slope never.
+fn is_smooth(points: ptr<function, array<Corner, 6>>) -> bool {
+    let receiver = (*points)[0].hit.receiver;
+    for (var i = 0u; i < 3u; i++) {
+        let a = (*points)[(i + 1u) % 3u].hit;
+        let b = (*points)[(i + 2u) % 3u].hit;
+        let middle = (*points)[3u + i].hit;
+        if a.receiver != receiver || middle.receiver != receiver { return false; }
+        if abs(middle.t - 0.5 * (a.t + b.t)) > SMOOTH_SHARE * abs(a.t - b.t) + 1e-5 { return false; }
+    }
+    return receiver > FLOOR;
+}
+
+// Halves one beam or part. Losses are noted one by one: floats added up over several parts would depend on the queue's order.
+fn halve(beam_index: u32, path: u32, is_last: bool) {
+    let above = max(split.level, 1u) - 1u;
+    let c = part_corners(beam_index, path, above);
+    let sum = c[0] + c[1] + c[2];
+    var points: array<Corner, 6>;
+    let is_whole_beam = split.level == 0u;
+    for (var i = 0u; i < select(6u, 3u, is_whole_beam); i++) {
+        let own = c[i % 3u];
+        points[i] = corner_at(select(own, (sum - own) * 0.5, i >= 3u));
+    }
+    let one_piece = !is_whole_beam && is_smooth(&points);
+    for (var k = 0u; k < select(4u, 1u, is_whole_beam); k++) {
+        let b = part_of(&points, k);
+        let straddles = !one_piece && !is_whole(b);
+        if straddles && !is_last {
+            push_part(beam_index, 4u * path + k);
+            continue;
+        }
+        note_term(TERM_EMITTED, b.flux_m2);
+        note_term(TERM_REFLECTED, b.flux_m2 - b.transmitted_m2);
+        if b.transmitted_m2 == 0.0 { continue; }
+        if straddles {
+            add_energy(TERM_TORN, b.transmitted_m2 * light.energy_scale);
+            atomicAdd(&energy[2u * TERM_TORN_COUNT], 1u);
+            if split.level < light.split_levels { add_energy(TERM_CUT, b.transmitted_m2 * light.energy_scale); }
+        }
+        note_losses(deposit_part(b, straddles));
+    }
 }
 
 @compute @workgroup_size(64)
 fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
-    let count = split_queue[QUEUE_COUNT];
-    for (var item = group.x; item < count; item += groups.x) {
-        let beam_index = split_queue[QUEUE_HEAD + item];
-        let cell_index = beam_index >> 1u;
-        let cell = vec2u(cell_index % light.cells, cell_index / light.cells);
-        for (var n = invocation; n < (1u << (2u * light.split_levels)); n += 64u) {
-            // Noted one by one: floats added up over several beams would depend on the queue's order.
-            note_losses(split_part(cell, beam_index & 1u, n));
+    let above = max(split.level, 1u) - 1u;
+    // A part has 4^−level of a beam's flux, and a workgroup at most 256 of them (of the beams' own parts twice that).
+    finer = min(f32(1u << (2u * above)), light.energy_scale / light.triangle_scale);
+    let count = atomicLoad(&split_queue[QUEUE_COUNT + above]);
+    // Whether the next level fits is decided by what is here, before anything is queued: the same beams are torn every time.
+    let is_last = split.level >= light.split_levels || count > split.capacity / 4u;
+    for (var item = group.x * SPLIT_GROUP + invocation; item < count; item += groups.x * SPLIT_GROUP) {
+        if above == 0u {
+            halve(atomicLoad(&split_queue[split.source + item]), 0u, is_last);
+        } else {
+            let word = split.source + 2u * item;
+            halve(atomicLoad(&split_queue[word]), atomicLoad(&split_queue[word + 1u]), is_last);
         }
     }
     workgroupBarrier();

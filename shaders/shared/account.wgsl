@@ -2,8 +2,11 @@
 
 var<workgroup> account: array<atomic<u32>, 9>;
 
+// Counts finer than those of whole beams, a power of two: what notes small parts sets it before the first.
+var<private> finer: f32 = 1.0;
+
 fn note_term(term: u32, value_m2: f32) {
-    let counts = u32(value_m2 * light.triangle_scale + 0.5);
+    let counts = u32(value_m2 * (light.triangle_scale * finer) + 0.5);
     if counts > 0u { atomicAdd(&account[term], counts); }
 }
 
@@ -23,6 +26,9 @@ fn note_losses(losses: Losses) {
 fn flush_account(invocation: u32) {
     if invocation < 9u {
         let counts = atomicLoad(&account[invocation]);
-        if counts > 0u { add_energy(invocation, f32(counts) * (light.energy_scale / light.triangle_scale)); }
+        // All scales are powers of two and each half fits f32: nothing is rounded, however the beams are shared out.
+        let scale = light.energy_scale / (light.triangle_scale * finer);
+        if counts >= 65536u { add_energy(invocation, f32(counts & 0xffff0000u) * scale); }
+        if counts > 0u { add_energy(invocation, f32(counts & 0xffffu) * scale); }
     }
 }

@@ -34,40 +34,34 @@ struct Losses {
     left: vec3f,
 }
 
-// A beam whose corners end on different receivers and that is not halved any more: each corner carries a third of the flux to
-// its own receiver, over the footprint that the whole beam has at that depth.
-fn deposit_torn(b: Beam) -> Losses {
+// Lays a part of a beam. Where its corners end on different receivers, each carries a third of the flux to its own, over the
+// footprint that the whole part has at that depth. There is one place that deposits, see `deposit_area`.
+fn deposit_part(b: Beam, is_torn: bool) -> Losses {
     var losses = Losses(0.0, vec3f(0.0), vec3f(0.0));
-    let third = b.transmitted_m2 / 3.0;
-    add_energy(TERM_TORN, b.transmitted_m2 * light.energy_scale);
-    atomicAdd(&energy[2u * TERM_TORN_COUNT], 1u);
-    for (var k = 0; k < 3; k++) {
+    let pieces = select(1, 3, is_torn);
+    let flux_m2 = b.transmitted_m2 / f32(pieces);
+    for (var k = 0; k < pieces; k++) {
         if b.receiver[k] == NO_RECEIVER {
-            losses.missed += third;
+            losses.missed += flux_m2;
             continue;
         }
         let r = receivers[b.receiver[k]];
-        var uv = mat3x2f();
-        for (var corner = 0; corner < 3; corner++) {
-            var t = b.t[k];
-            if b.receiver[k] == FLOOR {
-                let own = floor_distance(r, b.origin[corner], b.direction[corner]);
-                t = select(t, own, own >= 0.0);
+        var uv = b.uv;
+        var lengths_m = b.t;
+        if is_torn {
+            lengths_m = vec3f(b.t[k]);
+            for (var corner = 0; corner < 3; corner++) {
+                var t = b.t[k];
+                if b.receiver[k] == FLOOR {
+                    let own = floor_distance(r, b.origin[corner], b.direction[corner]);
+                    t = select(t, own, own >= 0.0);
+                }
+                uv[corner] = map_uv(r, b.origin[corner], b.direction[corner], t);
             }
-            uv[corner] = map_uv(r, b.origin[corner], b.direction[corner], t);
         }
-        let lengths = vec3f(b.t[k]);
-        let arriving = third * mean_transmission(lengths);
-        losses.extinguished += third * mean_extinction(lengths);
+        let arriving = flux_m2 * mean_transmission(lengths_m);
+        losses.extinguished += flux_m2 * mean_extinction(lengths_m);
         losses.left += arriving * deposit_triangle(target_of(r), uv[0], uv[1], uv[2], arriving);
     }
-    return losses;
-}
-
-// A beam that ends on one receiver.
-fn deposit_whole(b: Beam) -> Losses {
-    let arriving = b.transmitted_m2 * mean_transmission(b.t);
-    var losses = Losses(0.0, b.transmitted_m2 * mean_extinction(b.t), vec3f(0.0));
-    losses.left = arriving * deposit_triangle(target_of(receivers[b.receiver.x]), b.uv[0], b.uv[1], b.uv[2], arriving);
     return losses;
 }

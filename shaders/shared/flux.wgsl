@@ -18,6 +18,7 @@ const TERM_LEFT: u32 = 6u;
 const TERM_LANDED: u32 = 9u;
 const TERM_TORN: u32 = 12u;       // flux of beams that straddle receivers to the end
 const TERM_TORN_COUNT: u32 = 13u; // how many those are
+const TERM_CUT: u32 = 14u;        // flux of those that were halved less often than asked for, because the queue was full
 
 fn add_flux(texel: u32, channel: u32, channels: u32, counts: f32) {
     let place = texel * channels + channel;

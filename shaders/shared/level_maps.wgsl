@@ -13,6 +13,11 @@ fn level_offset(size: u32, level: u32) -> u32 {
     return offset;
 }
 
+// Last bit of a back depth of level 0: the mesh ends or steps in depth here, see shaders/passes/level_map_pyramid.wgsl.
+const EDGE_MARK: u32 = 1u;
+// What the march returns where only the mesh itself can tell.
+const AT_EDGE: f32 = -2.0;
+
 // (front, back) depth s of a texel of a level; front = EMPTY_DEPTH where there is nothing.
 fn level_map_depths(map_offset: u32, size: u32, level: u32, texel: vec2i) -> vec2f {
     let side = i32(size >> level);
@@ -37,7 +42,13 @@ fn smooth_front(r: Receiver, uv: vec2f, gap: f32) -> f32 {
     return sum;
 }
 
-// Where a ray (map space, t in m) enters what the level map holds, between t_min and t_max; t < 0: nowhere.
+fn is_edge_texel(map_offset: u32, size: u32, texel: vec2i) -> bool {
+    let word = map_offset + 2u * (u32(texel.y) * size + u32(texel.x));
+    return (level_maps[word + 1u] & EDGE_MARK) != 0u;
+}
+
+// Where a ray (map space, t in m) enters what the level map holds, between t_min and t_max; t < 0: nowhere, or AT_EDGE where it
+// comes to an edge texel first.
 // Hierarchical walk: cells whose depth interval the ray's own interval misses are passed whole.
 fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> f32 {
     let side = f32(r.map_width);
@@ -76,6 +87,7 @@ fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_m
         let t_leave = max(min(min(t_x, t_y), t_out), t);
         let s_0 = origin.z + t * direction.z;
         let s_1 = origin.z + t_leave * direction.z;
+        if level == 0u && is_edge_texel(r.level_map_offset, r.map_width, cell) { return AT_EDGE; }
         let depths = level_map_depths(r.level_map_offset, r.map_width, level, cell);
         if max(s_0, s_1) >= depths.x && min(s_0, s_1) <= depths.y {
             if level == 0u {

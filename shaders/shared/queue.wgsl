@@ -4,3 +4,9 @@
 const QUEUE_COUNT: u32 = 3u;
 const QUEUE_HEAD: u32 = 4u;
 const MOST_GROUPS: u32 = 65535u;
+
+// The split queue's head is longer: word 3 + l counts the parts of level l (0: whole beams). Behind it lie the beams (a word each),
+// then two lists of parts (beam and path, two words each) that the levels take in turns.
+const SPLIT_HEAD: u32 = 16u;
+// Queued beams or parts that a workgroup of the split pass takes.
+const SPLIT_GROUP: u32 = 64u;

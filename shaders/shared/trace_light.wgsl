@@ -1,4 +1,5 @@
-// The first receiver a light ray strikes under water.
+// The first receiver a light ray strikes under water: the floor exactly, meshes by their level maps, and by their triangles where
+// the level map has an edge. Silhouettes are then as sharp as the mesh, whatever the level map's texels.
 
 const FAR_M: f32 = 1e6;
 
@@ -21,6 +22,11 @@ fn trace_light(origin: vec3f, direction: vec3f, count: u32, has_floor: bool) -> 
         let o = to_map(r, origin);
         let d = direction_to_map(r, direction);
         let t = march_level_map(r, o, d, 0.0, best.t);
+        if t == AT_EDGE {
+            let met = trace_instance(instances[i - 1u], origin, direction, 0.0, best.t);
+            if met.t < best.t { best = Hit((o + d * met.t).xy, met.t, i32(i)); }
+            continue;
+        }
         if t < 0.0 || t >= best.t { continue; }
         // The march ends on a flat texel; once more with the depth between texels.
         var t_fine = t;

@@ -44,6 +44,17 @@ gpu_struct! {
 }
 
 gpu_struct! {
+    /// The uniform of `shaders/passes/split.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    Split = "Split" {
+        level: u32,
+        source: u32,
+        destination: u32,
+        capacity: u32,
+    }
+}
+
+gpu_struct! {
     /// A receiver of `shaders/shared/receivers.wgsl`; fields are documented there.
     #[expect(missing_docs, reason = "documented in the WGSL twin")]
     Receiver = "Receiver" {
@@ -204,8 +215,9 @@ gpu_struct! {
 pub type Layout = (&'static str, usize, &'static [(&'static str, usize)]);
 
 /// Layouts of all shared structs.
-pub const LAYOUTS: [Layout; 10] = [
+pub const LAYOUTS: [Layout; 11] = [
     Light::LAYOUT,
+    Split::LAYOUT,
     Receiver::LAYOUT,
     Wave::LAYOUT,
     Comparison::LAYOUT,

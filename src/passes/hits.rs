@@ -1,4 +1,5 @@
-//! Hits — what each ray strikes first: the floor exactly, meshes by marching into their level maps; the nearest wins.
+//! Hits — what each ray strikes first: the floor exactly, meshes by marching into their level maps, and by
+//! their triangles where those have edges; the nearest wins.
 
 use super::desc::{PassDesc, Repeat};
 use super::slot::Slot;
@@ -9,7 +10,7 @@ pub const PASS: PassDesc = PassDesc {
     name: "hits",
     repeat: Repeat::Sun,
     reads: &[Slot::Surface, Slot::Beams, Slot::Receivers],
-    reads_if_present: &[Slot::LevelMaps],
+    reads_if_present: &[Slot::LevelMaps, Slot::Geometry, Slot::Instances],
     writes: &[Slot::Hits],
     wanted: wanted_for_sun,
     steps: |facts, run| grid_step("hits_main", facts, run),

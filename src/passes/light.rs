@@ -18,6 +18,8 @@ const FINE_COUNTS: f64 = 65_536.0;
 /// Fewest counts of an evenly lit texel of the finest map; less, because a small object in a wide pool is common and must not
 /// make everything dear.
 const FINEST_MAP_COUNTS: f64 = 4096.0;
+/// Fewest counts of the smallest part of the largest beam that straddles receivers: less would be lost to rounding.
+const PART_COUNTS: f64 = 64.0;
 /// Where a narrow sum wraps.
 const WRAP_COUNTS: f64 = 4_294_967_296.0;
 /// Times an evenly lit texel's flux that a narrow sum holds.
@@ -54,7 +56,7 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
         split_levels: facts.quality.split_levels,
         pad: 0,
         wide_texels: WIDE_TEXELS,
-        triangle_scale: (BEAM_ACCOUNT_COUNTS / beam_m2) as f32,
+        triangle_scale: (BEAM_ACCOUNT_COUNTS / beam_m2).log2().floor().exp2() as f32,
     };
     bytemuck::bytes_of(&light).to_vec()
 }
@@ -93,12 +95,18 @@ fn texel_fluxes_m2(facts: &SceneFacts, index: usize) -> impl Iterator<Item = f64
         .chain(objects.map(|b| 1.0 / b.density_per_flux))
 }
 
-/// Whether narrow sums would be too coarse for a sun from the start: very many beams on a texel, or texels under a beam.
+/// Whether narrow sums would be too coarse for a sun from the start: very many beams on a texel, texels under a beam, or beams
+/// in very small parts.
 pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     let scale = flux_scale(facts, index, false);
     let coarsest_m2 = texel_fluxes_m2(facts, index).fold(0.0, f64::max);
     let finest_m2 = texel_fluxes_m2(facts, index).fold(f64::INFINITY, f64::min);
-    scale * largest_beam_m2(facts, &facts.suns[index]) < FINE_COUNTS
+    let parts = if facts.wet_objects().next().is_some() {
+        4.0_f64.powi(facts.quality.split_levels as i32)
+    } else {
+        1.0
+    };
+    scale * largest_beam_m2(facts, &facts.suns[index]) < FINE_COUNTS.max(PART_COUNTS * parts)
         || scale * coarsest_m2 < FINE_COUNTS
         || scale * finest_m2 < FINEST_MAP_COUNTS
 }

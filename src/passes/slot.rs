@@ -4,6 +4,13 @@ use crate::scene::facts::SceneFacts;
 
 /// Words at the head of a queue: the workgroups of the dispatch that empties it, and the count.
 pub const QUEUE_HEAD_WORDS: u64 = 4;
+/// Words at the head of the split queue, whose levels have counts of their own.
+pub const SPLIT_HEAD_WORDS: u64 = 16;
+/// Parts of straddling beams that a level of the split queue holds, per cell along the window's side and for each doubling: enough
+/// for shadow edges that together are thirty times as long as the window's side.
+const PARTS_PER_CELL: u64 = 64;
+/// Most parts that a level of the split queue holds: 32 MiB of them.
+const MOST_PARTS: u64 = 1 << 22;
 /// Most workgroups of a dispatch along one axis.
 pub const MOST_GROUPS: u32 = 65_535;
 /// Workgroups that share one wide footprint.
@@ -167,7 +174,7 @@ impl Slot {
             ),
             Self::SplitQueue => (
                 "split_queue",
-                "beams that straddle receivers",
+                "beams that straddle receivers, and two levels of their parts",
                 Lifetime::Sun,
             ),
             Self::WideQueue => (
@@ -255,7 +262,10 @@ impl Slot {
         });
         match self {
             Self::Surface | Self::Beams | Self::Hits => 16 * side * side,
-            Self::SplitQueue | Self::WideQueue => 4 * (QUEUE_HEAD_WORDS + 2 * cells * cells),
+            Self::WideQueue => 4 * (QUEUE_HEAD_WORDS + 2 * cells * cells),
+            Self::SplitQueue => {
+                4 * (SPLIT_HEAD_WORDS + 2 * cells * cells + 4 * u64::from(split_parts(facts)))
+            }
             Self::Flux => 8 * channels * u64::from(flux_texels(facts)),
             Self::Energy => 8 * ENERGY_TERMS,
             Self::Irradiance => 12 * irradiance_texels(facts),
@@ -296,6 +306,22 @@ pub fn readback_bytes(facts: &SceneFacts) -> u64 {
         None if facts.suns.is_empty() => 0,
         None => 12 * irradiance_texels(facts),
     }
+}
+
+/// Parts of straddling beams that a level of the split queue holds: what has been halved less than `split_levels` times is queued,
+/// and about twice as many parts straddle with each halving.
+pub fn split_parts(facts: &SceneFacts) -> u32 {
+    let levels = facts.quality.split_levels;
+    if levels < 2 || facts.wet_objects().next().is_none() {
+        return 0;
+    }
+    let cells = u64::from(facts.quality.water_cells);
+    // A level is opened only if it fits even where all four parts of each straddle.
+    let all = (2 * cells * cells) << (2 * (levels - 1));
+    let parts = ((PARTS_PER_CELL * cells) << levels)
+        .min(all)
+        .min(MOST_PARTS);
+    u32::try_from(parts).unwrap_or(u32::MAX)
 }
 
 /// Texels of the floor's map.

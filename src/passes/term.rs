@@ -16,3 +16,5 @@ pub const LANDED: usize = 9;
 pub const TORN: usize = 12;
 /// How many those are.
 pub const TORN_COUNT: usize = 13;
+/// Flux of those that were halved less often than asked for, because the queue was full.
+pub const CUT: usize = 14;

@@ -6,7 +6,7 @@ use super::{RenderError, Renderer, geometry, slot_name};
 use crate::passes::desc::Step;
 use crate::passes::gpu_data::{Receiver, Wave};
 use crate::passes::light;
-use crate::passes::slot::{Lifetime, Slot, WIDE_GROUPS};
+use crate::passes::slot::{Lifetime, SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
 use crate::plan::Plan;
 use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
@@ -227,6 +227,9 @@ pub(super) fn clear_for_sun(encoder: &mut wgpu::CommandEncoder, buffers: &FrameB
             } else {
                 0
             };
+            if *name == slot_name(Slot::SplitQueue) {
+                encoder.clear_buffer(buffer, 0, Some(4 * SPLIT_HEAD_WORDS));
+            }
             encoder.copy_buffer_to_buffer(&buffers.queue_heads, head, buffer, 0, 16);
         } else if info.lifetime == Lifetime::Sun
             && (*name == slot_name(Slot::Flux) || *name == slot_name(Slot::Energy))

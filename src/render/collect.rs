@@ -54,21 +54,32 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
         };
         account.closure = closure(&account);
         if terms[term::TORN_COUNT] > 0 {
-            let mut warning = Warning::new(
-                "beams_torn",
-                format!(
-                    "{} beams of light {} with {:.2} % of its flux still straddle receivers after quality.split_levels halvings; each corner took a third",
-                    terms[term::TORN_COUNT],
-                    sun.light,
-                    100.0 * terms[term::TORN] as f64 / (terms[term::EMITTED] as f64).max(1.0)
-                ),
-            );
-            warning.flux_w = Some(grey(term::TORN));
-            warnings.push(warning);
+            warnings.push(Warning {
+                flux_w: Some(grey(term::TORN)),
+                ..Warning::new("beams_torn", torn_message(sun.light, terms))
+            });
         }
         accounts.push(account);
     }
     (accounts, warnings)
+}
+
+/// What beams that straddle receivers to the end have come to.
+fn torn_message(light: u32, terms: &[u64]) -> String {
+    let share = |t: usize| 100.0 * terms[t] as f64 / (terms[term::EMITTED] as f64).max(1.0);
+    let mut message = format!(
+        "{} parts of beams of light {light} with {:.3} % of its flux still straddle receivers after quality.split_levels halvings; each corner took a third",
+        terms[term::TORN_COUNT],
+        share(term::TORN),
+    );
+    if terms[term::CUT] > 0 {
+        let cut = format!(
+            "; {:.3} % were halved less often, because so many straddle that the queue was full: fewer quality.split_levels with more quality.water_cells do the same",
+            share(term::CUT)
+        );
+        message.push_str(&cut);
+    }
+    message
 }
 
 /// Flux of a sun under unit irradiance that is in no term of its raw account, m²; the largest of the channels.

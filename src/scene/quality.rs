@@ -26,9 +26,10 @@ pub struct Quality {
     #[serde(deserialize_with = "integer::<LevelMapTexels, _>")]
     #[schema(minimum = 16, maximum = 2048)]
     pub level_map_texels: u32,
-    /// How often beams that straddle receivers are halved, 0 … 4. Default 2.
+    /// How often beams that straddle receivers are halved, 0 … 8. Default 2. Only the parts that still straddle are halved on, so
+    /// each further level about doubles the time for shadow edges and halves their width.
     #[serde(deserialize_with = "integer::<SplitLevels, _>")]
-    #[schema(minimum = 0, maximum = 4)]
+    #[schema(minimum = 0, maximum = 8)]
     pub split_levels: u32,
     /// Relative L1 error of the irradiance to stay under, 0.0001 … 0.5: the program then chooses the dials above itself, and those
     /// that are given do not count (`stats.accuracy.chosen` has what they became). Not with `time_budget_ms`. Default: absent.

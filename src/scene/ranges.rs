@@ -128,7 +128,7 @@ integers! {
     /// `quality.map_texels`.
     MapTexels = 16..=4096;
     /// `quality.split_levels`.
-    SplitLevels = 0..=4;
+    SplitLevels = 0..=8;
     /// `quality.pixel_samples`.
     PixelSamples = 1..=8;
     /// `width` and `height` of a view.

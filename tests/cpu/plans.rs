@@ -128,7 +128,7 @@ fn no_plan_is_left_without_its_scene() {
 
 #[test]
 fn a_full_scene_needs_every_pass() {
-    let plan = pool_with(&[]);
+    let plan = pool_with(&[("quality", json!({ "estimate_error": true }))]);
     let all: Vec<&str> = passes::ALL.iter().map(|pass| pass.name).collect();
     assert_eq!(names(&plan), all);
     assert!(plan.absent.is_empty(), "{:?}", plan.absent);
@@ -321,7 +321,9 @@ fn scenes_are_fast_with_narrow_sums_and_extremes_are_exact_with_wide_ones() {
                 let wide = passes::light::needs_wide_sums(&facts, sun);
                 // 512² cells are 128 beams for each of the 64² texels of flat.json.
                 let crowded = name == "flat" && matches!(cells, "512" | "1024");
-                assert_eq!(wide, crowded, "{name}, {cells}");
+                // The reef's boxes are small for its pool: their texels would count too coarsely.
+                let fine = name == "reef";
+                assert_eq!(wide, crowded || fine, "{name}, {cells}");
             }
         }
     }

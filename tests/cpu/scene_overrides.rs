@@ -23,7 +23,8 @@ fn every_serialised_field_of_quality_and_output_is_there_once() {
     let map = json!({ "output": {
         "kind": "irradiance_map", "receiver": "floor", "min_m": [0, 0], "max_m": [1, 1], "width": 1, "height": 1, "light": 0
     } });
-    let view = Scene::from_value(json!({})).unwrap();
+    let wishes = json!({ "quality": { "target_error": 0.1, "time_budget_ms": 10 } });
+    let view = Scene::from_value(wishes).unwrap();
     let map = Scene::from_value(map).unwrap();
     let mut pointers = Vec::new();
     for scene in [view, map] {

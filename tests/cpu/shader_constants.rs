@@ -49,7 +49,8 @@ fn terms_of_the_energy_account_agree() {
     agrees("TERM_LANDED", term::LANDED as f64);
     agrees("TERM_TORN", term::TORN as f64);
     agrees("TERM_TORN_COUNT", term::TORN_COUNT as f64);
-    assert!((term::TORN_COUNT as u64) < slot::ENERGY_TERMS);
+    agrees("TERM_CUT", term::CUT as f64);
+    assert!((term::CUT as u64) < slot::ENERGY_TERMS);
 }
 
 #[test]
@@ -63,6 +64,7 @@ fn terms_do_not_overlap() {
         (term::LANDED, 3),
         (term::TORN, 1),
         (term::TORN_COUNT, 1),
+        (term::CUT, 1),
     ];
     for pair in places.windows(2) {
         assert_eq!(pair[0].0 + pair[0].1, pair[1].0);
@@ -81,6 +83,7 @@ fn figures_of_queues_and_maps_agree() {
     agrees("MOST_GROUPS", f64::from(slot::MOST_GROUPS));
     agrees("QUEUE_HEAD", slot::QUEUE_HEAD_WORDS as f64);
     agrees("QUEUE_COUNT", slot::QUEUE_HEAD_WORDS as f64 - 1.0);
+    agrees("SPLIT_HEAD", slot::SPLIT_HEAD_WORDS as f64);
     agrees("EMPTY_DEPTH", level_map::EMPTY_DEPTH);
     let camera = module("passes/camera_irradiance.wgsl");
     assert_eq!(array_length(&camera, "suns"), MAX_SUNS);

@@ -13,7 +13,16 @@ use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Va
 /// Storage buffers that every WebGPU device can bind to one stage.
 const BASELINE_STORAGE_BUFFERS: usize = 8;
 /// Uniform variables that steps bring along.
-const UNIFORMS: [&str; 6] = ["light", "view", "level_map_view", "resolve", "span", "suns"];
+const UNIFORMS: [&str; 8] = [
+    "comparison",
+    "level_map_view",
+    "light",
+    "resolve",
+    "span",
+    "split",
+    "suns",
+    "view",
+];
 /// Textures that the executor draws into.
 const TEXTURES: [&str; 3] = ["front_depth", "back_depth", "front_normal"];
 

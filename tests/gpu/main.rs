@@ -19,6 +19,7 @@ mod scene_files;
 mod service;
 mod shadows;
 mod sine_pool;
+mod splitting;
 mod symmetry;
 mod tiles;
 mod view;
