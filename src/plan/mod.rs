@@ -328,9 +328,11 @@ fn slots(
                 Slot::LevelMaps => cached.arena_bytes(wanted),
                 _ => slot.bytes(facts),
             };
+            // What is empty and lent out has one element; what is empty and kept is not there at all.
+            let kept = matches!(slot, Slot::LevelMaps | Slot::Geometry);
             PlannedSlot {
                 name: info.name.to_owned(),
-                bytes: bytes.max(16),
+                bytes: if kept { bytes } else { bytes.max(16) },
                 holds: info.holds.to_owned(),
             }
         })

@@ -14,12 +14,14 @@ mod footprint;
 mod formulas;
 mod harness;
 mod memory;
+mod planted;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
 mod service;
 mod shadows;
 mod sine_pool;
 mod splitting;
+mod study;
 mod symmetry;
 mod tiles;
 mod view;
