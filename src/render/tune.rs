@@ -97,7 +97,7 @@ impl Renderer {
         meets: bool,
         reason: String,
     ) -> Result<ChosenDials, RenderError> {
-        let quality = ladder::rung(&resolved.scene.quality, cells);
+        let quality = ladder::rung(&resolved.scene.quality, &resolved.scene.output, cells);
         Ok(ChosenDials {
             water_cells: quality.water_cells,
             map_texels: quality.map_texels,
@@ -158,7 +158,7 @@ impl Renderer {
 
 fn with_cells(resolved: &ResolvedScene, cells: u32) -> ResolvedScene {
     let mut rung = resolved.clone();
-    rung.scene.quality = ladder::rung(&resolved.scene.quality, cells);
+    rung.scene.quality = ladder::rung(&resolved.scene.quality, &resolved.scene.output, cells);
     rung
 }
 

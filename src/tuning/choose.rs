@@ -4,12 +4,15 @@ use super::ladder::{FEWEST_CELLS, MOST_CELLS};
 
 /// Cells of the first look.
 const FIRST_LOOK: u32 = 64;
-/// Order at which a map's error falls with the cells: measured on every scene of docs/accuracy.md.
-const MAP_ORDER: f64 = 2.0;
+/// Order at which a map's error is taken to fall with the cells. It is 2 once the cells know the waves, and 1.75 … 1.95 on the way
+/// there (docs/accuracy.md).
+const MAP_ORDER: f64 = 1.85;
+/// Errors above this say that the cells do not know the waves yet: nothing is foretold from them.
+const TRUSTED_BELOW: f64 = 0.15;
 /// Least and largest order that is believed of a view: its map's texels blur, and what they blur is sharp.
 const VIEW_ORDER: (f64, f64) = (0.5, 2.0);
 /// Times the cells of a look beyond which its error is not extrapolated: another look comes first.
-const FARTHEST: f64 = 2.5;
+const FARTHEST: f64 = 3.2;
 /// Looks at most.
 const MOST_LOOKS: u32 = 5;
 /// Share of a time budget that predictions are held to: they scatter.
@@ -76,7 +79,11 @@ pub fn for_error<E>(
             order = ((error_before / error).ln() / finer).clamp(VIEW_ORDER.0, VIEW_ORDER.1);
         }
         let needed = (f64::from(cells) * (error / target).powf(1.0 / order)).ceil();
-        let known = !prospect.is_view || looks > 1 || needed <= f64::from(cells);
+        let known = if prospect.is_view {
+            looks > 1 || needed <= f64::from(cells)
+        } else {
+            error < TRUSTED_BELOW || needed <= f64::from(cells)
+        };
         let near = needed <= FARTHEST * f64::from(cells);
         if (known && near) || looks == MOST_LOOKS || 2 * cells > most {
             let chosen = needed.clamp(f64::from(FEWEST_CELLS), f64::from(most)) as u32;
@@ -88,7 +95,7 @@ pub fn for_error<E>(
             });
         }
         before = Some((cells, error));
-        cells = ((needed / 2.0) as u32).max(2 * cells).min(most);
+        cells = ((needed / 3.0) as u32).max(2 * cells).min(most);
     }
 }
 

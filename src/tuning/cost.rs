@@ -25,6 +25,7 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
     let waves = facts.surface.components.len() as f64;
     let wet = facts.wet_objects().count() as f64;
     let texels = f64::from(slot::flux_texels(facts));
+    let sums = 0.6 + 0.4 * f64::from(facts.channels());
     let level_texels = f64::from(slot::object_texels(facts));
     let pixels = facts.camera.map_or(0.0, |camera| {
         f64::from(camera.width)
@@ -40,8 +41,8 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
         "beams" => cells,
         // A ray looks at every receiver.
         "hits" => cells * (1.0 + wet),
-        // Beams cover the maps about twice over, however many there are.
-        "deposit" => cells + texels,
+        // Beams cover the maps about twice over, however many there are; each has its share of setting up, and each channel its sums.
+        "deposit" => (5.0 * cells + texels) * sums,
         "split" => {
             f64::from(facts.quality.water_cells)
                 * f64::from(1_u32 << facts.quality.split_levels)

@@ -1,21 +1,34 @@
 //! The dials as one family: a number of water cells, and what the other dials have to be so that none of them spoils what the cells
 //! give or costs more than it brings.
 
-use crate::scene::Quality;
+use crate::scene::{Output, Quality, Receiver};
 
 /// Fewest water cells of a rung.
 pub const FEWEST_CELLS: u32 = 16;
 /// Most water cells of a rung.
 pub const MOST_CELLS: u32 = 2048;
 
-/// The dials with `cells` water cells; those that are no matter of accuracy of the light stay as they are.
-pub fn rung(given: &Quality, cells: u32) -> Quality {
+/// Level maps of meshes that only cast shadows: their edges are found on the triangles themselves, whatever the map.
+const SHADOW_TEXELS: u32 = 128;
+
+/// The dials with `cells` water cells; those that are no matter of accuracy of the light stay as they are, and so does the size of a
+/// map that was asked for.
+///
+/// A beam's error falls with the square of the cells and a torn beam's with its size: each doubling of the cells asks for one more
+/// halving. A camera looks between the texels of the floor's map, which therefore has some more than there are cells.
+pub fn rung(given: &Quality, output: &Output, cells: u32) -> Quality {
     let cells = cells.clamp(FEWEST_CELLS, MOST_CELLS);
     Quality {
         water_cells: cells,
         map_texels: (3 * cells / 2).clamp(128, 2048),
-        level_map_texels: cells.next_power_of_two().clamp(128, 1024),
-        split_levels: 4,
+        level_map_texels: match output {
+            Output::View(_) => (cells.next_power_of_two() / 2).clamp(128, 1024),
+            Output::IrradianceMap(map) => match map.receiver {
+                Receiver::Floor(_) => SHADOW_TEXELS,
+                Receiver::Object(_) => given.level_map_texels,
+            },
+        },
+        split_levels: cells.ilog2().saturating_sub(6).clamp(1, 5),
         target_error: None,
         time_budget_ms: None,
         ..given.clone()

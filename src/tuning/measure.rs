@@ -170,6 +170,7 @@ fn timed_scenes() -> Vec<Value> {
             json!({ "mesh": "box", "translation_m": [0.6 * x, -1.2, 0.6 * z], "scale": 0.25 })
         });
         value["objects"] = objects.collect();
+        value["water"]["absorption_per_m"] = json!([0.3, 0.1, 0.05]);
         all.push(value);
     }
     for (width, height) in [(160, 90), (640, 360)] {

@@ -1,0 +1,91 @@
+//! Writes `docs/accuracy.md`: what each dial buys on the example scenes, measured by the program itself.
+//!
+//! `make docs` runs it; truths are kept in `out/truth`, so a second run only renders. Times are those of the machine it runs on,
+//! which the page names.
+
+mod page;
+mod scenes;
+mod wishes;
+
+use std::error::Error;
+use std::path::Path;
+
+use caustica::accuracy::dial::Dial;
+use caustica::accuracy::report::write_study;
+use caustica::accuracy::sweep::{Refusal, SweepSettings, run_study};
+use caustica::config::{Limits, RenderConfig};
+use caustica::reference::{TruthSettings, truth};
+use caustica::render::{RenderError, Renderer};
+use tokio_util::sync::CancellationToken;
+
+use page::Chapter;
+
+/// Timed runs of each setting.
+const RUNS: u32 = 5;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let only: Vec<String> = std::env::args().skip(1).collect();
+    let mut chapters = Vec::new();
+    let wanted = |name: &str| only.is_empty() || only.iter().any(|o| o == name);
+    for scene in scenes::ALL.iter().filter(|scene| wanted(scene.name)) {
+        eprintln!("{} …", scene.name);
+        let resolved = scenes::load(scene.name)?;
+        let settings = TruthSettings {
+            target_error: Some(scene.truth_error),
+            disk: Some("out/truth".into()),
+            ..TruthSettings::default()
+        };
+        let truth = truth(&resolved, &settings, &|_| {}, &|| false)?;
+        // A renderer of its own for each scene, so that no memory of the one counts for the other.
+        let mut renderer = Renderer::new(&RenderConfig::default())?;
+        let sweeps = SweepSettings {
+            dials: Dial::for_scene(&resolved),
+            grid: false,
+            runs: RUNS,
+        };
+        let (study, images) = run_study(
+            &resolved,
+            scene.name,
+            &truth,
+            &sweeps,
+            &Limits::default(),
+            &mut |scene| {
+                renderer
+                    .render(&scene, &CancellationToken::new())
+                    .map_err(|error| match error {
+                        RenderError::OverBudget { .. } => Refusal::Setting(error),
+                        _ => Refusal::All(error),
+                    })
+            },
+            &mut |done, total, what| {
+                eprintln!("  {done} of {total}: {what}");
+                true
+            },
+        )?;
+        let wishes = wishes::grant(&mut renderer, &resolved, &truth, RUNS)?;
+        let folder = Path::new("docs/accuracy").join(scene.name);
+        write_study(&folder, &study, &images)?;
+        // The page and its neighbours link the vector graphics; the same plots as pixels would only weigh.
+        for entry in std::fs::read_dir(&folder)? {
+            let path = entry?.path();
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
+            let name = name.unwrap_or_default();
+            let is_copy = name.ends_with(".png") && !name.starts_with("errors_water_cells");
+            if is_copy && !name.starts_with("errors_") {
+                std::fs::remove_file(path)?;
+            }
+        }
+        chapters.push(Chapter {
+            scene,
+            study,
+            wishes,
+        });
+    }
+    if only.is_empty() {
+        std::fs::write("docs/accuracy.md", page::write(&chapters))?;
+        eprintln!("docs/accuracy.md");
+    } else {
+        println!("{}", page::write(&chapters));
+    }
+    Ok(())
+}

@@ -1,0 +1,67 @@
+//! The scenes of the page.
+
+use std::error::Error;
+
+use caustica::cli::scene_file;
+use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
+use caustica::config::Limits;
+use caustica::scene::ResolvedScene;
+
+/// A scene and how well its truth has to be known.
+#[derive(Debug)]
+pub(crate) struct Scene {
+    /// File name without `.json`.
+    pub name: &'static str,
+    /// What is hard about it.
+    pub about: &'static str,
+    /// Relative L1 error of the truth.
+    pub truth_error: f64,
+}
+
+/// In the order of the page.
+pub(crate) const ALL: [Scene; 7] = [
+    Scene {
+        name: "flat",
+        about: "Flat water, absorption: every beam has the same footprint, and the answer is one number.",
+        truth_error: 1e-5,
+    },
+    Scene {
+        name: "sine_pool",
+        about: "Three sines over a floor past the first focus: the design's own yardstick.",
+        truth_error: 5e-4,
+    },
+    Scene {
+        name: "steep_pool",
+        about: "Four steeper sines over a floor of 4 m: light that has folded over itself several times.",
+        truth_error: 8e-4,
+    },
+    Scene {
+        name: "low_sun",
+        about: "A sun 12° over the horizon: long ways through the water, cells drawn out into needles.",
+        truth_error: 8e-4,
+    },
+    Scene {
+        name: "teapot_floor",
+        about: "The floor under a teapot: caustics with a shadow in them.",
+        truth_error: 8e-4,
+    },
+    Scene {
+        name: "reef",
+        about: "Twenty-five meshes over a floor: many small shadows.",
+        truth_error: 8e-4,
+    },
+    Scene {
+        name: "teapot_pool",
+        about: "What a camera sees of the pool with the teapot, pixel by pixel, meshes and all.",
+        truth_error: 3e-3,
+    },
+];
+
+/// A scene with its meshes.
+pub(crate) fn load(name: &str) -> Result<ResolvedScene, Box<dyn Error>> {
+    let args = SceneArgs {
+        scene: format!("scenes/{name}.json").into(),
+        overrides: SceneOverrides::default(),
+    };
+    Ok(scene_file::load(&args, None, &Limits::default())?.resolved)
+}
