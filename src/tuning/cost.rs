@@ -43,11 +43,12 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
         "hits" => cells * (1.0 + wet),
         // Beams cover the maps about twice over, however many there are; each has its share of setting up, and each channel its sums.
         "deposit" => (5.0 * cells + texels) * sums,
+        // Parts along the shadows' edges, each with rays through the waves and down the meshes' hierarchies.
         "split" => {
             f64::from(facts.quality.water_cells)
                 * f64::from(1_u32 << facts.quality.split_levels)
-                * wet.sqrt()
-                * (1.0 + waves)
+                * edges(facts)
+                * (1.0 + waves + (facts.geometry_bytes as f64 / 64.0).max(1.0).log2())
         }
         "landed" | "irradiance" => texels,
         // A quarter of all the light's passes.
@@ -57,6 +58,23 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
         "camera_irradiance" | "shade" => pixels,
         _ => 0.0,
     }
+}
+
+/// Length of the shadows' edges, in sides of the suns' windows.
+fn edges(facts: &SceneFacts) -> f64 {
+    let around_m: f64 = facts
+        .wet_objects()
+        .map(|index| {
+            let size = facts.objects[index].max - facts.objects[index].min;
+            2.0 * (size.x + size.z)
+        })
+        .sum();
+    let side_m = facts
+        .suns
+        .iter()
+        .map(|sun| sun.window.size().max_element())
+        .fold(0.0, f64::max);
+    if side_m > 0.0 { around_m / side_m } else { 0.0 }
 }
 
 /// What a plan will take with warm pipelines, ms. Passes without a rate count nothing.

@@ -14,8 +14,8 @@ const SHADOW_TEXELS: u32 = 128;
 /// The dials with `cells` water cells; those that are no matter of accuracy of the light stay as they are, and so does the size of a
 /// map that was asked for.
 ///
-/// A beam's error falls with the square of the cells and a torn beam's with its size: each doubling of the cells asks for one more
-/// halving. A camera looks between the texels of the floor's map, which therefore has some more than there are cells.
+/// A beam's error falls with the square of the cells and a torn beam's with its size, so very many cells ask for more halvings; each
+/// costs as much as all before it. A camera looks between the texels of the floor's map, which therefore has some more than there are cells.
 pub fn rung(given: &Quality, output: &Output, cells: u32) -> Quality {
     let cells = cells.clamp(FEWEST_CELLS, MOST_CELLS);
     Quality {
@@ -28,7 +28,7 @@ pub fn rung(given: &Quality, output: &Output, cells: u32) -> Quality {
                 Receiver::Object(_) => given.level_map_texels,
             },
         },
-        split_levels: cells.ilog2().saturating_sub(6).clamp(1, 5),
+        split_levels: cells.ilog2().saturating_sub(7).clamp(2, 4),
         target_error: None,
         time_budget_ms: None,
         ..given.clone()
