@@ -11,7 +11,7 @@ export NODEVICE_SELECT ?= 1
 endif
 
 .DEFAULT_GOAL := build
-.PHONY: demo build test lint bench clean deps
+.PHONY: demo build test lint bench docs clean deps
 
 # Render the example scene.
 demo: build
@@ -35,6 +35,10 @@ lint: deps
 # Measure.
 bench: deps
 	$(CARGO) bench --locked --bench caustica
+
+# Measure what each dial buys, and write docs/accuracy.md; minutes on a quiet machine.
+docs: deps
+	$(CARGO) run --release --locked --example make_docs
 
 # Remove everything that was made.
 clean:

@@ -32,7 +32,7 @@ pub struct AccuracyArgs {
     /// Sweep all combinations of the dials instead of one dial at a time.
     #[arg(long)]
     pub grid: bool,
-    /// Timed runs of each setting.
+    /// Timed runs of each setting; slow ones are content with three.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub runs: u32,
     /// Relative L1 error that the truth may have by its own estimate.

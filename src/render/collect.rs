@@ -241,6 +241,7 @@ pub(super) fn estimated_error(facts: &SceneFacts, differences: &[[f32; 4]]) -> O
             difference: difference_w / landed_w,
             cells_ratio: f64::from(facts.quality.water_cells)
                 / f64::from(coarse.quality.water_cells),
+            is_view: facts.camera.is_some(),
         })
     })
 }

@@ -50,9 +50,10 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
                 * edges(facts)
                 * (1.0 + waves + (facts.geometry_bytes as f64 / 64.0).max(1.0).log2())
         }
-        "landed" | "irradiance" => texels,
+        "landed" => texels * f64::from(facts.channels()),
+        "irradiance" => texels,
         // A quarter of all the light's passes.
-        "coarse_irradiance" => 0.25 * (cells * (3.0 + waves + wet) + texels),
+        "coarse_irradiance" => 0.25 * (cells * (5.0 * sums + 2.0 + waves + wet) + texels * sums),
         "estimate" => texels,
         "camera_hits" => pixels * (1.0 + waves),
         "camera_irradiance" | "shade" => pixels,
