@@ -10,7 +10,6 @@ mod wishes;
 use std::error::Error;
 use std::path::Path;
 
-use caustica::accuracy::dial::Dial;
 use caustica::accuracy::report::write_study;
 use caustica::accuracy::sweep::{Refusal, SweepSettings, run_study};
 use caustica::config::{Limits, RenderConfig};
@@ -39,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         // A renderer of its own for each scene, so that no memory of the one counts for the other.
         let mut renderer = Renderer::new(&RenderConfig::default())?;
         let sweeps = SweepSettings {
-            dials: Dial::for_scene(&resolved),
+            dials: scene.dials(&resolved)?,
             grid: false,
             runs: RUNS,
         };
@@ -65,16 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let wishes = wishes::grant(&mut renderer, &resolved, &truth, RUNS)?;
         let folder = Path::new("docs/accuracy").join(scene.name);
         write_study(&folder, &study, &images)?;
-        // The page and its neighbours link the vector graphics; the same plots as pixels would only weigh.
-        for entry in std::fs::read_dir(&folder)? {
-            let path = entry?.path();
-            let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
-            let name = name.unwrap_or_default();
-            let is_copy = name.ends_with(".png") && !name.starts_with("errors_water_cells");
-            if is_copy && !name.starts_with("errors_") {
-                std::fs::remove_file(path)?;
-            }
-        }
+        drop_copies(&folder)?;
         chapters.push(Chapter {
             scene,
             study,
@@ -87,5 +77,34 @@ fn main() -> Result<(), Box<dyn Error>> {
     } else {
         println!("{}", page::write(&chapters));
     }
+    Ok(())
+}
+
+/// Keeps what the page needs light: plots as vector graphics, sheets of errors for the cells only, and reports without links to
+/// what is not there.
+fn drop_copies(folder: &Path) -> Result<(), Box<dyn Error>> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = path
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned());
+        let is_png = path.extension().is_some_and(|extension| extension == "png");
+        if is_png && name.as_deref() != Some("errors_water_cells.png") {
+            std::fs::remove_file(path)?;
+        }
+    }
+    let report = folder.join("study.md");
+    let text = std::fs::read_to_string(&report)?;
+    let kept: Vec<&str> = text
+        .lines()
+        .filter(|line| {
+            let target = line.strip_prefix("![").and_then(|rest| {
+                let (_, target) = rest.split_once("](")?;
+                target.strip_suffix(')')
+            });
+            target.is_none_or(|target| folder.join(target).is_file())
+        })
+        .collect();
+    std::fs::write(report, kept.join("\n") + "\n")?;
     Ok(())
 }

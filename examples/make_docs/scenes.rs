@@ -2,6 +2,7 @@
 
 use std::error::Error;
 
+use caustica::accuracy::dial::{Dial, DialError};
 use caustica::cli::scene_file;
 use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
 use caustica::config::Limits;
@@ -16,6 +17,18 @@ pub(crate) struct Scene {
     pub about: &'static str,
     /// Relative L1 error of the truth.
     pub truth_error: f64,
+    /// Sweeps other than those that the scene itself calls for.
+    pub dials: Option<&'static [&'static str]>,
+}
+
+impl Scene {
+    /// What is swept.
+    pub(crate) fn dials(&self, resolved: &ResolvedScene) -> Result<Vec<Dial>, DialError> {
+        match self.dials {
+            Some(texts) => texts.iter().map(|text| Dial::parse(text)).collect(),
+            None => Ok(Dial::for_scene(resolved)),
+        }
+    }
 }
 
 /// In the order of the page.
@@ -24,36 +37,52 @@ pub(crate) const ALL: [Scene; 7] = [
         name: "flat",
         about: "Flat water, absorption: every beam has the same footprint, and the answer is one number.",
         truth_error: 1e-5,
+        dials: None,
     },
     Scene {
         name: "sine_pool",
         about: "Three sines over a floor past the first focus: the design's own yardstick.",
         truth_error: 5e-4,
+        dials: None,
     },
     Scene {
         name: "steep_pool",
         about: "Four steeper sines over a floor of 4 m: light that has folded over itself several times.",
         truth_error: 8e-4,
+        dials: None,
     },
     Scene {
         name: "low_sun",
         about: "A sun 12° over the horizon: long ways through the water, cells drawn out into needles.",
         truth_error: 8e-4,
+        dials: None,
     },
     Scene {
         name: "teapot_floor",
         about: "The floor under a teapot: caustics with a shadow in them.",
         truth_error: 8e-4,
+        dials: None,
     },
     Scene {
         name: "reef",
         about: "Twenty-five meshes over a floor: many small shadows.",
         truth_error: 8e-4,
+        dials: Some(&[
+            "water_cells=64..1024",
+            "split_levels=0..5",
+            "level_map_texels=64..256",
+        ]),
     },
     Scene {
         name: "teapot_pool",
         about: "What a camera sees of the pool with the teapot, pixel by pixel, meshes and all.",
         truth_error: 3e-3,
+        // Frames of seconds: fewer of them.
+        dials: Some(&[
+            "water_cells=128..1024",
+            "split_levels=0,2,4",
+            "map_texels=256..2048",
+        ]),
     },
 ];
 

@@ -21,8 +21,6 @@ pub(crate) struct Wish {
     pub chosen: ChosenDials,
     /// True relative L1 error.
     pub error: f64,
-    /// What the frame with the chosen dials estimates itself.
-    pub estimated: Option<f64>,
     /// Median time of a frame with the chosen dials, ms.
     pub frame_ms: f64,
     /// Looks and choice, ms.
@@ -84,7 +82,6 @@ pub(crate) fn grant(
         wishes.push(Wish {
             target,
             error: point.error.relative_l1,
-            estimated: point.error.estimated,
             frame_ms: point.cost.wall_ms.median,
             choosing_ms: stats.time_ms.plan,
             chosen,
