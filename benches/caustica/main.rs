@@ -3,9 +3,10 @@
 //! `cargo bench --bench caustica -- --quick` is the short form. Every figure is the median of several warm runs with the
 //! smallest and the largest beside it, since other work on the machine shows first in the largest.
 //!
-//! `frames` measures rendering, `files` encoding, `service` HTTP; `spread` sums up runs, `memory` asks the system, `report`
+//! `frames` measures rendering, `accuracy` what a frame's estimate of its error costs, `files` encoding, `service` HTTP; `spread` sums up runs, `memory` asks the system, `report`
 //! writes the table.
 
+mod accuracy;
 mod files;
 mod frames;
 mod memory;
@@ -89,6 +90,11 @@ fn run(effort: Effort, quick: bool) -> Result<(), Box<dyn Error>> {
     let pool = frames::teapot_pool(&mut Renderer::new(&RenderConfig::default())?, effort)?;
     report.tables.push(sines.table);
     report.tables.push(pool.table);
+    let mut renderer = Renderer::new(&RenderConfig::default())?;
+    report
+        .tables
+        .push(accuracy::estimates(&mut renderer, effort)?);
+    drop(renderer);
     report.tables.push(files::encoding(&pool.frame, effort)?);
     drop(pool.frame);
     let service = service::requests(effort)?;

@@ -136,7 +136,7 @@ fn range(ratios: &[f64]) -> String {
 
 fn estimates(chapters: &[Chapter]) -> String {
     let mut text = "\n## A frame's own estimate\n\n\
-        `quality.estimate_error` does the light once more with half the cells, a quarter of the work, and compares. Estimate over true\n\
+        `quality.estimate_error` does the light once more with two fifths of the cells, a sixth of the work, and compares. Estimate over true\n\
         error, over all settings below whose error is at least three times the truth's own:\n\n\
         | scene | settings | estimate ÷ true error |\n| --- | ---: | ---: |\n"
         .to_owned();

@@ -1,11 +1,11 @@
-//! A frame's estimate of its own error, from the same light done with half the water cells.
+//! A frame's estimate of its own error, from the same light done with two fifths of the water cells.
 
 /// What a frame knows of itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameComparison {
     /// Σ|fine − coarse| / Σ fine over the frame's maps.
     pub difference: f64,
-    /// Water cells along a side, fine over coarse: 2, or nearly.
+    /// Water cells along a side, fine over coarse: 2.5, or nearly.
     pub cells_ratio: f64,
     /// Whether the coarse map was looked up between its texels, as a camera does, and not block by block.
     pub is_view: bool,

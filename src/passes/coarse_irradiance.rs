@@ -1,4 +1,4 @@
-//! Coarse irradiance — finishes a sun's maps when its light is done again with half the water cells.
+//! Coarse irradiance — finishes a sun's maps when its light is done again with two fifths of the water cells.
 
 use super::desc::{PassDesc, Repeat};
 use super::estimate;

@@ -5,6 +5,7 @@ use super::gpu_data::{Resolve, vec4};
 use super::light::{light_uniform, receivers};
 use super::slot::{self, Slot};
 use super::surface::wanted_for_sun;
+use crate::scene::Receiver;
 use crate::scene::facts::SceneFacts;
 
 /// See the module.
@@ -23,7 +24,11 @@ pub const PASS: PassDesc = PassDesc {
                 map.width, map.height
             ));
         }
-        let wet = facts.wet_objects().count();
+        let wet = match facts.map_receiver {
+            None => facts.wet_objects().count(),
+            Some(Receiver::Floor(_)) => 0,
+            Some(Receiver::Object(_)) => 1,
+        };
         if wet > 0 {
             let side = facts.quality.level_map_texels;
             parts.push(format!(
@@ -36,7 +41,16 @@ pub const PASS: PassDesc = PassDesc {
     steps: |facts, run| resolve_steps("irradiance_main", facts, run),
 };
 
-/// One dispatch per receiver of a sun: its piece of the flux sums becomes W/m².
+/// Whether anything reads the finished map of receiver `number` (0 the floor, then the objects): a camera reads all, a map is of one.
+fn is_asked_for(facts: &SceneFacts, number: usize) -> bool {
+    match facts.map_receiver {
+        None => true,
+        Some(Receiver::Floor(_)) => number == 0,
+        Some(Receiver::Object(index)) => number == index as usize + 1,
+    }
+}
+
+/// One dispatch per receiver of a sun whose map is asked for: its piece of the flux sums becomes W/m².
 pub(super) fn resolve_steps(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
     let Run::Sun { index, wide_sums } = run else {
         return Vec::new();
@@ -44,7 +58,7 @@ pub(super) fn resolve_steps(entry: &'static str, facts: &SceneFacts, run: Run<'_
     let mut steps = Vec::new();
     for (number, receiver) in receivers(facts, index, |_| 0).iter().enumerate() {
         let texels = receiver.map_width * receiver.map_height;
-        if texels == 0 {
+        if texels == 0 || !is_asked_for(facts, number) {
             continue;
         }
         let resolve = Resolve {
