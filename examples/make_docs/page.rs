@@ -71,8 +71,8 @@ fn dials() -> String {
        across the floor; fewer blur, and no number of cells brings back what is blurred.\n\
      - **`split_levels`** sharpens the shadows of meshes. 2 is right for most; each level more halves the error along the edges and\n  \
        doubles the time for them. Without meshes it costs and changes nothing.\n\
-     - **`level_map_texels`** is the resolution of light *on* meshes. Their shadows do not depend on it: edges are found on the\n  \
-       triangles themselves.\n"
+     - **`level_map_texels`** is the resolution of light *on* meshes. Their shadows hardly depend on it: edges are\n  \
+       found on the triangles themselves; only what is thinner than a texel may be missed.\n"
         .to_owned()
 }
 

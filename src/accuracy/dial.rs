@@ -6,6 +6,8 @@ use crate::config::Limits;
 use crate::scene::overrides::{self, Field};
 use crate::scene::{Issue, ResolvedScene, Scene, SceneError};
 
+/// Every setting is estimated once and timed without: there is nothing to sweep.
+const NO_DIAL: &str = "estimate_error";
 /// Most values of one dial.
 pub const MOST_VALUES: usize = 32;
 /// Ranges that end at or below this count by one; longer ones double.
@@ -49,11 +51,11 @@ pub enum DialError {
     },
 }
 
-/// All dials there are: the fields of `quality`.
+/// All dials there are: the fields of `quality`, but for the switch of the estimate.
 pub fn dials() -> Vec<Field> {
     overrides::fields()
         .into_iter()
-        .filter(|field| field.pointer.starts_with("/quality/"))
+        .filter(|field| field.pointer.starts_with("/quality/") && field.name != NO_DIAL)
         .collect()
 }
 
@@ -111,7 +113,10 @@ impl Dial {
         let mut texts = vec!["water_cells=64..1024"];
         if !resolved.scene.objects.is_empty() {
             texts.push("split_levels=0..6");
-            texts.push("level_map_texels=64..1024");
+            // Of a map on a mesh it is the size, which the truth shares.
+            if !resolved.scene.output.is_object_map() {
+                texts.push("level_map_texels=64..1024");
+            }
         }
         if resolved.scene.output.is_view() {
             texts.push("map_texels=128..2048");

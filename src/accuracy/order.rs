@@ -33,6 +33,9 @@ pub fn dial_number(sweep: &Sweep, point: &Point) -> Option<f64> {
     (point.dials.len() == 1 && value > 0.0).then_some(value)
 }
 
+/// What single precision leaves: errors below it do not converge.
+const ROUNDING: f64 = 1e-5;
+
 /// Fits a power law by least squares of the logarithms, to the settings whose error is at least [`TRUTH_MARGIN`] times the
 /// truth's own. Nothing when fewer than two different ones remain.
 pub fn fit_order(sweep: &Sweep, truth_relative_error: f64) -> Option<OrderFit> {
@@ -41,7 +44,7 @@ pub fn fit_order(sweep: &Sweep, truth_relative_error: f64) -> Option<OrderFit> {
         .iter()
         .map(|point| {
             let error = point.error.relative_l1;
-            let clear = error > 0.0 && error >= TRUTH_MARGIN * truth_relative_error;
+            let clear = error > ROUNDING && error >= TRUTH_MARGIN * truth_relative_error;
             dial_number(sweep, point)
                 .filter(|_| clear)
                 .map(|dial| (dial, error))

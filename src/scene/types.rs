@@ -381,6 +381,11 @@ impl<'de> Deserialize<'de> for Output {
 }
 
 impl Output {
+    /// Whether it is a map on a mesh.
+    pub fn is_object_map(&self) -> bool {
+        matches!(self, Self::IrradianceMap(map) if matches!(map.receiver, Receiver::Object(_)))
+    }
+
     /// Whether a camera takes a picture.
     pub fn is_view(&self) -> bool {
         matches!(self, Self::View(_))

@@ -8,7 +8,8 @@ pub const FEWEST_CELLS: u32 = 16;
 /// Most water cells of a rung.
 pub const MOST_CELLS: u32 = 2048;
 
-/// Level maps of meshes that only cast shadows: their edges are found on the triangles themselves, whatever the map.
+/// Fewest texels of level maps of meshes that only cast shadows: their edges are found on the triangles themselves, but what is thinner
+/// than a texel may be missed.
 const SHADOW_TEXELS: u32 = 128;
 
 /// The dials with `cells` water cells; those that are no matter of accuracy of the light stay as they are, and so does the size of a
@@ -24,7 +25,7 @@ pub fn rung(given: &Quality, output: &Output, cells: u32) -> Quality {
         level_map_texels: match output {
             Output::View(_) => (cells.next_power_of_two() / 2).clamp(128, 1024),
             Output::IrradianceMap(map) => match map.receiver {
-                Receiver::Floor(_) => SHADOW_TEXELS,
+                Receiver::Floor(_) => (cells.next_power_of_two() / 2).clamp(SHADOW_TEXELS, 512),
                 Receiver::Object(_) => given.level_map_texels,
             },
         },
