@@ -11,7 +11,7 @@ export NODEVICE_SELECT ?= 1
 endif
 
 .DEFAULT_GOAL := build
-.PHONY: demo build test lint bench docs clean deps
+.PHONY: demo build test lint bench docs mutants clean deps
 
 # Render the example scene.
 demo: build
@@ -39,6 +39,10 @@ bench: deps
 # Measure what each dial buys, and write docs/accuracy.md; minutes on a quiet machine.
 docs: deps
 	$(CARGO) run --release --locked --example make_docs
+
+# Plant wrong signs in a copy of the sources, see that the tests catch each, and write docs/mutants.md; half an hour.
+mutants: deps
+	$(CARGO) run --release --locked --example mutants
 
 # Remove everything that was made.
 clean:

@@ -14,8 +14,9 @@ use crate::config::Limits;
 use crate::frame::Frame;
 use crate::reference::{Truth, TruthKind};
 use crate::scene::facts::SceneFacts;
-use crate::scene::{LayerName, Output, ResolvedScene, SceneError};
+use crate::scene::{Issue, LayerName, Output, ResolvedScene, SceneError};
 use crate::stats::{Stats, Warning};
+use crate::tuning::ladder;
 
 /// Most settings of a study.
 pub const MOST_SETTINGS: usize = 64;
@@ -93,18 +94,9 @@ pub fn run_study<E: std::error::Error>(
     progress: &mut Progress<'_>,
 ) -> Result<(Study, StudyImages), StudyError<E>> {
     let plan = settings_of(settings);
-    let total: usize = plan.iter().map(|(_, settings)| settings.len()).sum();
-    if total > MOST_SETTINGS {
-        return Err(StudyError::TooMany(total));
-    }
     // Every setting is checked before any time is spent.
-    let base = with_irradiance(resolved);
-    let mut scenes = Vec::new();
-    for (_, settings) in &plan {
-        for dials in settings {
-            scenes.push(with_dials(&base, dials, limits)?);
-        }
-    }
+    let scenes = scenes_of(&plan, resolved, limits)?;
+    let total = scenes.len();
     let edge = truth.shadow_edge(SHADOW_EDGE_TEXELS);
     let mut study = Study {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -182,6 +174,59 @@ pub fn run_study<E: std::error::Error>(
     fit_orders(&mut study);
     mark_pareto_front(&mut study);
     Ok((study, images))
+}
+
+/// What [`run_study`] refuses before it spends any time, for those who have a truth to compute first.
+///
+/// # Errors
+/// [`StudyError::Scene`] where a dial's value is not accepted, [`StudyError::TooMany`].
+pub fn check<E: std::error::Error>(
+    resolved: &ResolvedScene,
+    settings: &SweepSettings,
+    limits: &Limits,
+) -> Result<(), StudyError<E>> {
+    scenes_of(&settings_of(settings), resolved, limits).map(drop)
+}
+
+/// The scene with each setting, in order.
+fn scenes_of<E: std::error::Error>(
+    plan: &[(String, Vec<Setting>)],
+    resolved: &ResolvedScene,
+    limits: &Limits,
+) -> Result<Vec<ResolvedScene>, StudyError<E>> {
+    let total = plan.iter().map(|(_, settings)| settings.len()).sum();
+    if total > MOST_SETTINGS {
+        return Err(StudyError::TooMany(total));
+    }
+    let base = with_irradiance(resolved);
+    let settings = plan.iter().flat_map(|(_, settings)| settings);
+    settings
+        .map(|dials| {
+            let scene = with_dials(&base, dials, limits)?;
+            refuse_overruled(&scene, dials)?;
+            Ok(scene)
+        })
+        .collect()
+}
+
+/// Refuses to sweep a dial that the program would choose itself: every setting would be the same.
+fn refuse_overruled(scene: &ResolvedScene, dials: &[(String, String)]) -> Result<(), SceneError> {
+    let quality = &scene.scene.quality;
+    let wish = match (quality.target_error, quality.time_budget_ms) {
+        (Some(_), _) => "target_error",
+        (_, Some(_)) => "time_budget_ms",
+        _ => return Ok(()),
+    };
+    let is_chosen = |(name, _): &&(String, String)| ladder::sets(name, &scene.scene.output);
+    match dials.iter().find(is_chosen) {
+        None => Ok(()),
+        Some((name, _)) => Err(Issue::invalid(
+            format!("/quality/{wish}"),
+            format!("with it the program chooses {name} itself, so there is nothing to sweep"),
+            format!("no {wish}, or sweeps of {wish} itself"),
+        )
+        .into()),
+    }
 }
 
 /// One setting: dials with their values.

@@ -13,7 +13,7 @@ use super::summary::columns;
 use crate::accuracy::dial::Dial;
 use crate::accuracy::report::write_study;
 use crate::accuracy::study::Study;
-use crate::accuracy::sweep::{Refusal, StudyError, SweepSettings, run_study};
+use crate::accuracy::sweep::{self, Refusal, StudyError, SweepSettings, run_study};
 use crate::config::{Limits, RenderConfig};
 use crate::reference::{ReferenceError, TruthSettings, truth};
 use crate::render::{RenderError, Renderer};
@@ -64,6 +64,8 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
         grid: args.grid,
         runs: args.runs,
     };
+    // Before the truth, which may take minutes.
+    sweep::check(resolved, &settings, limits).map_err(|error| refused(args, error))?;
     std::fs::create_dir_all(&args.output).map_err(|e| CliError::write(&args.output, e))?;
     let progress = bar();
     progress.set_message("the float64 truth");

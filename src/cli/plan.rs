@@ -6,13 +6,14 @@ use clap::Args;
 
 use super::error::CliError;
 use super::scene_flags::SceneArgs;
-use super::summary::{bytes, columns};
+use super::summary::{bytes, columns, predicted};
 use super::{files, scene_file};
 use crate::config::{Limits, RenderConfig};
 use crate::plan::Plan;
 use crate::plan::{NothingCached, plan_scene};
 use crate::render::{RenderError, Renderer};
 use crate::scene::facts::SceneFacts;
+use crate::stats::ChosenDials;
 
 /// What to plan.
 #[derive(Clone, Debug, Args)]
@@ -75,7 +76,9 @@ pub fn in_words(plan: &Plan) -> String {
         .slots
         .iter()
         .map(|slot| vec![slot.name.clone(), bytes(slot.bytes), slot.holds.clone()]);
-    let sections: [(&str, Vec<Vec<String>>); 3] = [
+    let chosen = plan.chosen.iter().flat_map(dials);
+    let sections: [(&str, Vec<Vec<String>>); 4] = [
+        ("Chosen dials", chosen.collect()),
         ("Passes", passes.collect()),
         ("Not needed", absent.collect()),
         ("Memory", slots.collect()),
@@ -90,4 +93,17 @@ pub fn in_words(plan: &Plan) -> String {
         let _ = writeln!(text, "Warning ({}): {}", warning.code, warning.message);
     }
     text
+}
+
+/// Chosen dials, what they are predicted to give, and why.
+fn dials(chosen: &ChosenDials) -> Vec<Vec<String>> {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    vec![
+        row("water_cells", chosen.water_cells.to_string()),
+        row("map_texels", chosen.map_texels.to_string()),
+        row("level_map_texels", chosen.level_map_texels.to_string()),
+        row("split_levels", chosen.split_levels.to_string()),
+        row("predicted", predicted(chosen)),
+        row("reason", chosen.reason.clone()),
+    ]
 }

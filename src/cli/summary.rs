@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::picture::Picture;
-use crate::stats::{AdapterStats, Stats};
+use crate::stats::{AccuracyStats, AdapterStats, ChosenDials, Stats};
 
 /// Where the picture is, and what it cost.
 pub fn of_picture(picture: &Picture, path: &Path, notes: &[String]) -> String {
@@ -31,6 +31,9 @@ pub fn of_picture(picture: &Picture, path: &Path, notes: &[String]) -> String {
             bytes(memory.budget_bytes)
         ),
     ));
+    if let Some(accuracy) = &stats.accuracy {
+        rows.extend(accuracy_rows(accuracy));
+    }
     for account in &stats.energy {
         let light = format!("light {}: closed to {:.1e}", account.light, account.closure);
         rows.push(row("energy", light));
@@ -70,6 +73,43 @@ pub fn adapter(adapter: &AdapterStats) -> String {
         ""
     };
     format!("{name} ({backend}, {driver}{software})")
+}
+
+/// Chosen dials, and how near the truth the frame thinks it is.
+fn accuracy_rows(accuracy: &AccuracyStats) -> Vec<Vec<String>> {
+    let chosen = accuracy.chosen.as_ref().map(|chosen| {
+        let cells = chosen.water_cells;
+        format!(
+            "{cells} water cells chosen: predicted {}",
+            predicted(chosen)
+        )
+    });
+    let estimated = accuracy
+        .estimated_error
+        .map(|error| format!("estimated error {}", percent(error)));
+    let lines = chosen.into_iter().chain(estimated);
+    lines.map(|line| row("accuracy", line)).collect()
+}
+
+/// Error and time that chosen dials are predicted to give.
+pub fn predicted(chosen: &ChosenDials) -> String {
+    format!(
+        "error {}, {:.0} ms",
+        percent(chosen.predicted_error),
+        chosen.predicted_ms
+    )
+}
+
+/// A share in percent, with three digits that count.
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    let digits = match percent {
+        p if p >= 10.0 => 1,
+        p if p >= 1.0 => 2,
+        p if p >= 0.1 => 3,
+        _ => 4,
+    };
+    format!("{percent:.digits$} %")
 }
 
 fn passes(stats: &Stats) -> Vec<Vec<String>> {

@@ -22,6 +22,22 @@ pub fn human_bytes(bytes: u64) -> String {
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(chosen) = &self.chosen {
+            writeln!(f, "chosen dials")?;
+            for (name, value) in [
+                ("water_cells", chosen.water_cells),
+                ("map_texels", chosen.map_texels),
+                ("level_map_texels", chosen.level_map_texels),
+                ("split_levels", chosen.split_levels),
+            ] {
+                writeln!(f, "  {name}: {value}")?;
+            }
+            writeln!(
+                f,
+                "  relative L1 error {:.2e} and {:.0} ms predicted: {}",
+                chosen.predicted_error, chosen.predicted_ms, chosen.reason
+            )?;
+        }
         writeln!(f, "passes")?;
         for pass in &self.passes {
             let times = if pass.runs == 1 {

@@ -35,3 +35,15 @@ pub fn rung(given: &Quality, output: &Output, cells: u32) -> Quality {
         ..given.clone()
     }
 }
+
+/// Whether [`rung`] sets this field of `quality`, whatever was given.
+pub fn sets(dial: &str, output: &Output) -> bool {
+    match dial {
+        "water_cells" | "map_texels" | "split_levels" => true,
+        "level_map_texels" => !matches!(
+            output,
+            Output::IrradianceMap(map) if matches!(map.receiver, Receiver::Object(_))
+        ),
+        _ => false,
+    }
+}

@@ -10,7 +10,7 @@ use caustica::config::AdapterPolicy;
 use caustica::plan::{Plan, PlannedPass, PlannedSlot};
 use caustica::render::{SelfCheck, SelfCheckItem};
 use caustica::scene::overrides::fields;
-use caustica::stats::AbsentPass;
+use caustica::stats::{AbsentPass, ChosenDials};
 use clap::{CommandFactory, Parser};
 
 fn parsed(words: &[&str]) -> Result<Cli, clap::Error> {
@@ -274,7 +274,7 @@ fn a_selfcheck_that_checks_nothing_has_not_passed() {
 
 #[test]
 fn a_plan_reads_well() {
-    let plan = Plan {
+    let mut plan = Plan {
         passes: vec![PlannedPass {
             name: "surface".to_owned(),
             reason: "beams read it".to_owned(),
@@ -300,6 +300,40 @@ fn a_plan_reads_well() {
          Memory\n  water  3.0 MiB  height, m\n\n\
          Peak: 1.5 KiB\n"
     );
+    plan.chosen = Some(ChosenDials {
+        water_cells: 113,
+        map_texels: 169,
+        level_map_texels: 128,
+        split_levels: 2,
+        predicted_error: 0.0198,
+        predicted_ms: 9.2,
+        meets: true,
+        reason: "2 looks".to_owned(),
+    });
+    let chosen = "Chosen dials\n  water_cells       113\n  map_texels        169\n  level_map_texels  128\n  \
+                  split_levels      2\n  predicted         error 1.98 %, 9 ms\n  reason            2 looks\n\nPasses\n";
+    let text = plan::in_words(&plan);
+    assert!(text.starts_with(chosen), "{text}");
+    let text = plan.to_string();
+    let chosen = "chosen dials\n  water_cells: 113\n";
+    assert!(
+        text.starts_with(chosen) && text.contains("1.98e-2 and 9 ms predicted: 2 looks"),
+        "{text}"
+    );
+}
+
+#[test]
+fn errors_have_three_digits_that_count() {
+    let table = [
+        (0.5, "50.0 %"),
+        (0.0198, "1.98 %"),
+        (0.0035, "0.350 %"),
+        (0.00012, "0.0120 %"),
+        (0.0, "0.0000 %"),
+    ];
+    for (share, text) in table {
+        assert_eq!(summary::percent(share), text);
+    }
 }
 
 #[test]

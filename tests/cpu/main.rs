@@ -23,8 +23,11 @@ mod mesh_hierarchy;
 mod mesh_obj;
 mod mesh_store;
 mod metrics;
+mod mutants;
 mod physics;
 mod plans;
+#[path = "../../examples/mutants/plants.rs"]
+mod plants;
 mod project;
 mod reference;
 mod reference_closed_form;

@@ -6,10 +6,18 @@
     reason = "`json!` literals are passed as they are"
 )]
 
+mod accuracy_program;
+mod accuracy_service;
 mod determinism;
 mod energy;
 mod estimate;
 mod flat;
+#[allow(
+    dead_code,
+    reason = "the tests of scene files use what is not used here"
+)]
+#[path = "../cpu/folder.rs"]
+mod folder;
 mod footprint;
 mod formulas;
 mod harness;

@@ -15,16 +15,16 @@ use super::scene_files;
 
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
-struct Service(AppState);
+pub(crate) struct Service(pub(crate) AppState);
 
-struct Reply {
-    status: u16,
-    media_type: String,
-    body: Vec<u8>,
+pub(crate) struct Reply {
+    pub(crate) status: u16,
+    pub(crate) media_type: String,
+    pub(crate) body: Vec<u8>,
 }
 
 impl Reply {
-    fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         serde_json::from_slice(&self.body)
             .unwrap_or_else(|error| panic!("{error} in {}", String::from_utf8_lossy(&self.body)))
     }
@@ -51,7 +51,7 @@ impl Service {
         Self(state)
     }
 
-    async fn post(
+    pub(crate) async fn post(
         &self,
         path: &str,
         media_type: &str,
@@ -77,13 +77,13 @@ impl Service {
         }
     }
 
-    async fn render(&self, scene: impl ToString) -> Reply {
+    pub(crate) async fn render(&self, scene: impl ToString) -> Reply {
         self.post("/v1/render", "application/json", "*/*", scene.to_string())
             .await
     }
 
     /// Image (base64) and stats of a render that must succeed.
-    async fn render_json(&self, scene: &Value) -> (Value, Value) {
+    pub(crate) async fn render_json(&self, scene: &Value) -> (Value, Value) {
         let body = scene.to_string();
         let reply = self
             .post("/v1/render", "application/json", "application/json", body)
@@ -119,7 +119,7 @@ impl Service {
 }
 
 /// Checks a refusal: status, kind, and, where one is given, the pointer of a finding.
-fn assert_refused(reply: &Reply, status: u16, kind: &str, pointer: &str) -> Value {
+pub(crate) fn assert_refused(reply: &Reply, status: u16, kind: &str, pointer: &str) -> Value {
     let problem = reply.json();
     assert_eq!(reply.status, status, "{problem}");
     assert_eq!(reply.media_type, "application/problem+json");
@@ -154,7 +154,7 @@ fn pool(changes: &[(&str, Value)]) -> Value {
     scene
 }
 
-fn default_service() -> impl Future<Output = Service> {
+pub(crate) fn default_service() -> impl Future<Output = Service> {
     Service::start(RenderConfig::default(), Limits::default())
 }
 

@@ -28,7 +28,7 @@ use crate::accuracy::error_images::error_images;
 use crate::accuracy::plot::{convergence, error_against_time};
 use crate::accuracy::report::{self, ReportLinks};
 use crate::accuracy::study::{Study, StudyImages};
-use crate::accuracy::sweep::{Refusal, StudyError, SweepSettings, run_study};
+use crate::accuracy::sweep::{self, Refusal, StudyError, SweepSettings, run_study};
 use crate::jobs::JobError;
 use crate::reference::{ReferenceError, TruthSettings, truth};
 use crate::render::RenderError;
@@ -120,7 +120,7 @@ pub async fn accuracy(
     let reading = state.clone();
     let (resolved, settings, truth_error) = run_blocking(move || read(&body, &reading)).await?;
     state.require_trusted_device()?;
-    let _place = Arc::clone(state.studies())
+    let place = Arc::clone(state.studies())
         .try_acquire_owned()
         .map_err(|_| ApiError::StudyRunning)?;
     // Dropped with this future when the client leaves or the deadline passes.
@@ -128,6 +128,8 @@ pub async fn accuracy(
     let guard = cancel.clone().drop_guard();
     let handle = Handle::current();
     let answer = run_blocking(move || {
+        // Given back when the work has ended, not when the client has left: the thread goes on a little after that.
+        let _place = place;
         let found = study(
             &state,
             &resolved,
@@ -192,6 +194,8 @@ fn read(body: &Bytes, state: &AppState) -> Result<(ResolvedScene, SweepSettings,
                 grid: request.grid,
                 runs: request.runs,
             };
+            // Before the truth, which may take minutes.
+            sweep::check(&resolved, &settings, state.limits()).map_err(refused)?;
             Ok((resolved, settings, request.truth_error))
         }
         Ok(_) => Err(SceneError { issues }.into()),
@@ -230,8 +234,10 @@ fn study(
         other => ApiError::NoTruth(other.to_string()),
     })?;
     let mut render = |scene: ResolvedScene| {
+        let frame = cancel.run_until_cancelled(state.queue().render(scene, arrival));
         handle
-            .block_on(state.queue().render(scene, arrival))
+            .block_on(frame)
+            .unwrap_or(Err(JobError::Cancelled))
             .map_err(|error| match error {
                 JobError::Render(RenderError::OverBudget { .. }) => Refusal::Setting(error),
                 _ => Refusal::All(error),
@@ -246,7 +252,12 @@ fn study(
         &mut render,
         &mut |_, _, _| !cancel.is_cancelled(),
     )
-    .map_err(|error| match error {
+    .map_err(refused)
+}
+
+/// What a study refuses, at its place within the request.
+fn refused(error: StudyError<JobError>) -> ApiError {
+    match error {
         StudyError::Render(error) => error.into(),
         StudyError::Cancelled => JobError::Cancelled.into(),
         StudyError::Scene(error) => SceneError {
@@ -262,7 +273,7 @@ fn study(
         }
         .into(),
         StudyError::Metric(_) | StudyError::NothingLeft(_) => ApiError::NoTruth(error.to_string()),
-    })
+    }
 }
 
 fn respond(

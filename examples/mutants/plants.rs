@@ -1,0 +1,122 @@
+//! What is planted, and which tests must notice.
+
+/// A wrong sign or factor, and who must notice it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plant {
+    /// Source file, from the root of the project.
+    pub(crate) file: &'static str,
+    /// What stands there; occurs exactly once.
+    pub(crate) from: &'static str,
+    /// What is put there instead.
+    pub(crate) to: &'static str,
+    /// `cpu` or `gpu`: the tests in that folder of `tests`.
+    pub(crate) binary: &'static str,
+    /// Tests that must fail, as `file::name`; one of them is enough.
+    pub(crate) tests: &'static [&'static str],
+    /// What it breaks, for people.
+    pub(crate) what: &'static str,
+}
+
+/// All plants.
+pub(crate) const ALL: &[Plant] = &[
+    Plant {
+        file: "src/reference/refract.rs",
+        from: "x_m[i] = -l.x * per_eta - along_normal * a;",
+        to: "x_m[i] = -l.x * per_eta + along_normal * a;",
+        binary: "cpu",
+        tests: &[
+            "reference::waves_under_a_low_sun_are_what_single_rays_say",
+            "reference_closed_form::a_single_sine_is_the_closed_form",
+        ],
+        what: "the reference refracts away from the normal along x",
+    },
+    Plant {
+        file: "src/reference/refract.rs",
+        from: "let cosine = cos * c - sin * s;",
+        to: "let cosine = cos * c + sin * s;",
+        binary: "cpu",
+        tests: &[
+            "reference::waves_under_a_low_sun_are_what_single_rays_say",
+            "reference_closed_form::a_single_sine_is_the_closed_form",
+        ],
+        what: "the reference steps backwards through the slopes of its waves",
+    },
+    Plant {
+        file: "src/reference/occluders.rs",
+        from: "u + v > 1.0",
+        to: "u - v > 1.0",
+        binary: "cpu",
+        tests: &["reference_meshes::the_shadow_of_a_box_is_its_footprint"],
+        what: "triangles of the reference reach beyond their third edge",
+    },
+    Plant {
+        file: "src/reference/patch.rs",
+        from: "from_m + direction * (above_m / against) - self.center_m",
+        to: "from_m - direction * (above_m / against) - self.center_m",
+        binary: "cpu",
+        tests: &[
+            "truth::the_search_finds_all_light_on_tilted_squares",
+            "truth::points_on_the_floor_agree_with_the_map_of_the_floor",
+        ],
+        what: "the search for light on a point of a view looks against the rays",
+    },
+    Plant {
+        file: "src/accuracy/metrics.rs",
+        from: "map(|(a, b)| (a - b).abs()).sum()",
+        to: "map(|(a, b)| a - b).sum()",
+        binary: "cpu",
+        tests: &["accuracy_metrics::every_figure_rejects_wrong_images"],
+        what: "errors of opposite signs cancel in the relative L1 error",
+    },
+    Plant {
+        file: "src/tuning/choose.rs",
+        from: "(error / target).powf(1.0 / order)",
+        to: "(target / error).powf(1.0 / order)",
+        binary: "cpu",
+        tests: &["tuning::the_fewest_cells_under_the_target_are_chosen"],
+        what: "a smaller wanted error chooses fewer cells",
+    },
+    Plant {
+        file: "src/tuning/choose.rs",
+        from: "budget_ms * BUDGET_SHARE",
+        to: "budget_ms / BUDGET_SHARE",
+        binary: "cpu",
+        tests: &["tuning::a_budget_gets_the_most_cells_it_pays_for"],
+        what: "a time budget is overspent instead of held",
+    },
+    Plant {
+        file: "shaders/lib/refraction.wgsl",
+        from: "(cos_i / eta - cos_t)",
+        to: "(cos_i / eta + cos_t)",
+        binary: "gpu",
+        tests: &["planted::the_shaders_as_they_are_pass"],
+        what: "the GPU refracts away from the normal",
+    },
+    Plant {
+        file: "shaders/shared/footprint.wgsl",
+        from: "+ edges.dy.z * mean_clamped(",
+        to: "- edges.dy.z * mean_clamped(",
+        binary: "gpu",
+        tests: &["sine_pool::error_falls_with_the_square_of_the_cells"],
+        what: "the third edge of a footprint counts against its texels",
+    },
+    Plant {
+        file: "shaders/passes/split.wgsl",
+        from: "(sum - own) * 0.5, i >= 3u",
+        to: "(sum + own) * 0.5, i >= 3u",
+        binary: "gpu",
+        tests: &[
+            "splitting::each_halving_takes_error_from_shadow_edges",
+            "splitting::every_number_of_halvings_loses_nothing_and_tears_less",
+        ],
+        what: "beams are halved at points beyond their edges",
+    },
+    Plant {
+        file: "shaders/passes/split.wgsl",
+        from: "note_term(TERM_REFLECTED, b.flux_m2 - b.transmitted_m2)",
+        to: "note_term(TERM_REFLECTED, b.flux_m2 + b.transmitted_m2)",
+        binary: "gpu",
+        tests: &["splitting::every_number_of_halvings_loses_nothing_and_tears_less"],
+        what: "light that enters the water is also counted as reflected",
+    },
+];

@@ -1,0 +1,118 @@
+//! A copy of the project to plant things in.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::plants::Plant;
+
+/// The copy, and where it is built.
+pub(crate) struct Tree {
+    /// Root of the copy.
+    pub(crate) root: PathBuf,
+    /// Cargo's target folder for it: `CAUSTICA_MUTANTS_TARGET`, or one beside the copy.
+    pub(crate) target: PathBuf,
+}
+
+/// A plant in its place, until it is removed.
+pub(crate) struct Planted {
+    file: PathBuf,
+    before: String,
+}
+
+impl Tree {
+    /// Copies what git knows, and what it does not ignore, as it is in `project` now. Files that are the same already are left
+    /// alone, so that a second run builds less.
+    pub(crate) fn copy(project: &Path) -> io::Result<Self> {
+        let folder = std::env::var_os("CARGO_TARGET_DIR")
+            .map_or_else(|| project.join("target"), |target| project.join(target))
+            .join("mutants");
+        let tree = Self {
+            root: folder.join("tree"),
+            target: std::env::var_os("CAUSTICA_MUTANTS_TARGET")
+                .map_or_else(|| folder.join("target"), |target| project.join(target)),
+        };
+        let names = listed(project)?;
+        for name in &names {
+            let (from, to) = (project.join(name), tree.root.join(name));
+            let content = std::fs::read(&from)?;
+            if std::fs::read(&to).is_ok_and(|there| there == content) {
+                continue;
+            }
+            if let Some(parent) = to.parent() {
+                std::fs::create_dir_all(parent)?;
+            }
+            std::fs::copy(&from, &to)?;
+            // A copied file may look older than what was built from the one before it.
+            std::fs::File::options()
+                .append(true)
+                .open(&to)?
+                .set_modified(std::time::SystemTime::now())?;
+        }
+        remove_others(&tree.root, &tree.root, &names)?;
+        Ok(tree)
+    }
+
+    /// Puts `plant.to` where `plant.from` stands.
+    pub(crate) fn plant(&self, plant: &Plant) -> io::Result<Planted> {
+        let file = self.root.join(plant.file);
+        let before = std::fs::read_to_string(&file)?;
+        let count = before.matches(plant.from).count();
+        if count != 1 {
+            return Err(io::Error::other(format!(
+                "{} says `{}` {count} times; it must be once",
+                plant.file, plant.from
+            )));
+        }
+        std::fs::write(&file, before.replacen(plant.from, plant.to, 1))?;
+        Ok(Planted { file, before })
+    }
+}
+
+impl Planted {
+    /// Puts the file back as it was.
+    pub(crate) fn remove(self) -> io::Result<()> {
+        std::fs::write(&self.file, &self.before)
+    }
+}
+
+/// Files of the project, as git lists them.
+fn listed(project: &Path) -> io::Result<BTreeSet<PathBuf>> {
+    let output = Command::new("git")
+        .args([
+            "ls-files",
+            "-z",
+            "--cached",
+            "--others",
+            "--exclude-standard",
+        ])
+        .current_dir(project)
+        .output()?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        return Err(io::Error::other(format!("git ls-files: {said}")));
+    }
+    let names = String::from_utf8(output.stdout).map_err(io::Error::other)?;
+    Ok(names
+        .split('\0')
+        .filter(|name| !name.is_empty())
+        .map(PathBuf::from)
+        // Git lists what was deleted but not yet committed.
+        .filter(|name| project.join(name).is_file())
+        .collect())
+}
+
+/// Removes files of an earlier copy that the project no longer has: a stale test would be built and run.
+fn remove_others(root: &Path, folder: &Path, names: &BTreeSet<PathBuf>) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = path.strip_prefix(root).map_err(io::Error::other)?;
+        if path.is_dir() {
+            remove_others(root, &path, names)?;
+        } else if !names.contains(name) {
+            std::fs::remove_file(&path)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! Building a planted copy, and running the tests that must notice.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::tree::Tree;
+
+/// Time after which tests are ended: a plant may make a loop endless.
+const LONGEST: Duration = Duration::from_secs(20 * 60);
+
+/// What came of a plant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// These tests failed.
+    Caught(Vec<String>),
+    /// All tests passed.
+    Survived,
+    /// It does not build: that says nothing about the tests.
+    DoesNotBuild(String),
+    /// The tests ended without a verdict, or not at all.
+    NoVerdict(String),
+}
+
+impl Outcome {
+    /// Whether a test noticed.
+    pub(crate) fn is_caught(&self) -> bool {
+        matches!(self, Self::Caught(_))
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Caught(tests) => write!(f, "caught by {}", tests.join(", ")),
+            Self::Survived => write!(f, "SURVIVED"),
+            Self::DoesNotBuild(why) => write!(f, "DOES NOT BUILD: {why}"),
+            Self::NoVerdict(why) => write!(f, "NO VERDICT: {why}"),
+        }
+    }
+}
+
+/// Builds and tests a copy.
+pub(crate) struct Workshop {
+    root: PathBuf,
+    target: PathBuf,
+}
+
+impl Workshop {
+    /// For this copy.
+    pub(crate) fn of(tree: &Tree) -> Self {
+        Self {
+            root: tree.root.clone(),
+            target: tree.target.clone(),
+        }
+    }
+
+    /// Builds the tests of `tests/<binary>` and runs those named.
+    pub(crate) fn test(&self, binary: &str, tests: &[&str]) -> io::Result<Outcome> {
+        match self.build(binary)? {
+            Ok(program) => self.run(&program, tests),
+            Err(why) => Ok(Outcome::DoesNotBuild(why)),
+        }
+    }
+
+    /// The test program, or what the compiler says.
+    fn build(&self, binary: &str) -> io::Result<Result<PathBuf, String>> {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let output = Command::new(cargo)
+            .args([
+                "test",
+                "--release",
+                "--locked",
+                "--no-run",
+                "--test",
+                binary,
+            ])
+            .arg("--message-format=json-render-diagnostics")
+            .env("CARGO_TARGET_DIR", &self.target)
+            .current_dir(&self.root)
+            .output()?;
+        if !output.status.success() {
+            let said = String::from_utf8_lossy(&output.stderr);
+            let error = said.lines().find(|line| line.starts_with("error"));
+            return Ok(Err(error.unwrap_or("cargo gives no reason").to_owned()));
+        }
+        let messages = String::from_utf8_lossy(&output.stdout);
+        let program = messages
+            .lines()
+            .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+            .filter(|message| message["target"]["name"] == binary)
+            .find_map(|message| Some(PathBuf::from(message["executable"].as_str()?)));
+        Ok(program.ok_or_else(|| format!("error: cargo has built no tests `{binary}`")))
+    }
+
+    /// Runs tests by their full names.
+    fn run(&self, program: &Path, tests: &[&str]) -> io::Result<Outcome> {
+        let log = self.target.join("mutants.log");
+        let mut child = Command::new(program)
+            .arg("--exact")
+            .args(tests)
+            .current_dir(&self.root)
+            .stdout(std::fs::File::create(&log)?)
+            .stderr(Stdio::null())
+            .spawn()?;
+        let started = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait()? {
+                break status;
+            }
+            if started.elapsed() > LONGEST {
+                child.kill()?;
+                child.wait()?;
+                let minutes = LONGEST.as_secs() / 60;
+                return Ok(Outcome::NoVerdict(format!("not done in {minutes} min")));
+            }
+            std::thread::sleep(Duration::from_millis(100));
+        };
+        let said = std::fs::read_to_string(&log)?;
+        Ok(verdict(&said, status.success(), tests))
+    }
+}
+
+/// Reads what the test program said.
+fn verdict(said: &str, succeeded: bool, tests: &[&str]) -> Outcome {
+    // What tests print stands between a name and its result only without capture; names are told again at the end.
+    let failed: Vec<String> = tests
+        .iter()
+        .filter(|test| said.contains(&format!("test {test} ... FAILED")))
+        .map(|test| (*test).to_owned())
+        .collect();
+    let passed = tests
+        .iter()
+        .filter(|test| said.contains(&format!("test {test} ... ok")));
+    if !failed.is_empty() {
+        Outcome::Caught(failed)
+    } else if succeeded && passed.count() == tests.len() {
+        Outcome::Survived
+    } else {
+        let last = said.lines().rfind(|line| !line.is_empty());
+        Outcome::NoVerdict(last.unwrap_or("the tests said nothing").to_owned())
+    }
+}
