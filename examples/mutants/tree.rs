@@ -11,7 +11,7 @@ use super::plants::Plant;
 pub(crate) struct Tree {
     /// Root of the copy.
     pub(crate) root: PathBuf,
-    /// Cargo's target folder for it: `CAUSTICA_MUTANTS_TARGET`, or one beside the copy.
+    /// Cargo's target folder for it, used for nothing else: `CAUSTICA_MUTANTS_TARGET`, or one beside the copy.
     pub(crate) target: PathBuf,
 }
 
@@ -25,13 +25,21 @@ impl Tree {
     /// Copies what git knows, and what it does not ignore, as it is in `project` now. Files that are the same already are left
     /// alone, so that a second run builds less.
     pub(crate) fn copy(project: &Path) -> io::Result<Self> {
-        let folder = std::env::var_os("CARGO_TARGET_DIR")
-            .map_or_else(|| project.join("target"), |target| project.join(target))
-            .join("mutants");
+        let own = std::env::var_os("CARGO_TARGET_DIR")
+            .map_or_else(|| project.join("target"), |target| project.join(target));
+        let target = std::env::var_os("CAUSTICA_MUTANTS_TARGET").map_or_else(
+            || own.join("mutants").join("target"),
+            |target| project.join(target),
+        );
+        if target == own {
+            // Cargo gives both the same file names: one would run what the other has built.
+            return Err(io::Error::other(
+                "CAUSTICA_MUTANTS_TARGET is the project's own target folder; it must be another",
+            ));
+        }
         let tree = Self {
-            root: folder.join("tree"),
-            target: std::env::var_os("CAUSTICA_MUTANTS_TARGET")
-                .map_or_else(|| folder.join("target"), |target| project.join(target)),
+            root: own.join("mutants").join("tree"),
+            target,
         };
         let names = listed(project)?;
         for name in &names {
