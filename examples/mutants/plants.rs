@@ -70,7 +70,7 @@ pub(crate) const ALL: &[Plant] = &[
     },
     Plant {
         file: "src/tuning/choose.rs",
-        from: "(error / target).powf(1.0 / order)",
+        from: "(error / target).powf(1.0 / falls)",
         to: "(target / error).powf(1.0 / order)",
         binary: "cpu",
         tests: &["tuning::the_fewest_cells_under_the_target_are_chosen"],

@@ -20,6 +20,8 @@ use crate::tuning::ladder;
 
 /// Most settings of a study.
 pub const MOST_SETTINGS: usize = 64;
+/// Most values (texels or pixels, all settings together) that a study holds.
+pub const MOST_COMPARED: usize = 32_000_000;
 /// Texels around a shadow's edge whose error is told apart.
 pub const SHADOW_EDGE_TEXELS: u32 = 2;
 
@@ -48,6 +50,11 @@ pub enum StudyError<E: std::error::Error> {
     /// More than [`MOST_SETTINGS`].
     #[error("the dials have {0} settings; at most {MOST_SETTINGS} are accepted")]
     TooMany(usize),
+    /// More than [`MOST_COMPARED`].
+    #[error(
+        "{0} values would have to be held (texels or pixels times settings); at most {MOST_COMPARED} are accepted"
+    )]
+    TooLarge(usize),
     /// Images cannot be compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
@@ -97,6 +104,10 @@ pub fn run_study<E: std::error::Error>(
     // Every setting is checked before any time is spent.
     let scenes = scenes_of(&plan, resolved, limits)?;
     let total = scenes.len();
+    let values = truth.irradiance.len().saturating_mul(total);
+    if values > MOST_COMPARED {
+        return Err(StudyError::TooLarge(values));
+    }
     let edge = truth.shadow_edge(SHADOW_EDGE_TEXELS);
     let mut study = Study {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -131,7 +142,7 @@ pub fn run_study<E: std::error::Error>(
             done += 1;
             match measure(&scene, settings.runs, render) {
                 Ok((frame, costs)) => {
-                    let image = compared_image(&frame, truth);
+                    let image = compared_image(&frame, truth)?;
                     let mut error = error_figures(
                         &image,
                         &images.truth,
@@ -309,7 +320,14 @@ fn measure<E>(
 }
 
 /// The values of a frame that stand beside the truth's.
-fn compared_image(frame: &Frame, truth: &Truth) -> LinearImage {
+fn compared_image(frame: &Frame, truth: &Truth) -> Result<LinearImage, MetricError> {
+    let is_map = truth.kind != TruthKind::View;
+    if is_map && (frame.width, frame.height) != (truth.width, truth.height) {
+        return Err(MetricError::SizeMismatch {
+            image: frame.width as usize * frame.height as usize,
+            truth: truth.irradiance.len(),
+        });
+    }
     let layer = &frame.layers[&LayerName::Irradiance];
     let mut rgb = Vec::with_capacity(truth.irradiance.len());
     for j in 0..truth.height {
@@ -327,11 +345,11 @@ fn compared_image(frame: &Frame, truth: &Truth) -> LinearImage {
             }));
         }
     }
-    LinearImage {
+    Ok(LinearImage {
         width: truth.width,
         height: truth.height,
         rgb,
-    }
+    })
 }
 
 fn truth_figures(truth: &Truth, edge: Option<&[bool]>) -> TruthFigures {

@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use clap::Args;
 
+use tokio_util::sync::CancellationToken;
+
 use super::error::CliError;
 use super::scene_flags::SceneArgs;
 use super::summary::{bytes, columns, predicted};
@@ -36,7 +38,7 @@ pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<()
     let quality = &scene.resolved.scene.quality;
     let plan = if quality.target_error.is_some() || quality.time_budget_ms.is_some() {
         // Dials are chosen by looking at the scene.
-        Renderer::new(config)?.plan(&scene.resolved)?
+        Renderer::new(config)?.plan(&scene.resolved, &CancellationToken::new())?
     } else {
         // For an empty GPU: no device is opened, so a plan can be had anywhere.
         let facts = SceneFacts::of(&scene.resolved).map_err(RenderError::from)?;

@@ -15,7 +15,11 @@ pub trait RenderBackend {
     fn adapter(&self) -> AdapterStats;
 
     /// What would run, given what is cached now; looks at the scene where dials are to be chosen.
-    fn plan(&mut self, resolved: &ResolvedScene) -> Result<Plan, RenderError>;
+    fn plan(
+        &mut self,
+        resolved: &ResolvedScene,
+        cancel: &CancellationToken,
+    ) -> Result<Plan, RenderError>;
 
     /// Renders; `cancel` is looked at between submissions.
     fn render(
@@ -45,8 +49,12 @@ impl RenderBackend for Renderer {
         Renderer::adapter(self)
     }
 
-    fn plan(&mut self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
-        Renderer::plan(self, resolved)
+    fn plan(
+        &mut self,
+        resolved: &ResolvedScene,
+        cancel: &CancellationToken,
+    ) -> Result<Plan, RenderError> {
+        Renderer::plan(self, resolved, cancel)
     }
 
     fn render(

@@ -98,13 +98,15 @@ impl GpuQueue {
         .await
     }
 
-    /// Plans with what is cached now; nothing runs on the GPU.
+    /// Plans with what is cached now; nothing runs on the GPU but the looks by which dials are chosen.
     ///
     /// # Errors
     /// As [`GpuQueue::render`].
     pub async fn plan(&self, scene: ResolvedScene, arrival: Instant) -> Result<Plan, JobError> {
-        self.submit(arrival, move |backend, _| backend.plan(&scene))
-            .await
+        self.submit(arrival, move |backend, context| {
+            backend.plan(&scene, context.cancel)
+        })
+        .await
     }
 
     /// Compares this machine with float64 physics once more.

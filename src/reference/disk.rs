@@ -7,6 +7,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,10 @@ const MAGIC: &[u8; 16] = b"caustica truth 1";
 const ENGINE: u32 = 1;
 /// Bytes of the hash at the end.
 const HASH_BYTES: usize = 32;
+/// Ending of the files.
+const EXTENSION: &str = "truth";
+/// Most bytes that a folder of truths holds.
+const FOLDER_BYTES: u64 = 1 << 30;
 
 /// All of a [`Truth`] but its values.
 #[derive(Serialize, Deserialize)]
@@ -56,7 +61,7 @@ impl Shelf {
     }
 
     pub(super) fn file(&self) -> PathBuf {
-        self.folder.join(format!("{}.truth", self.key))
+        self.folder.join(format!("{}.{EXTENSION}", self.key))
     }
 
     /// The truth that lies there, if it is whole and as good as `settings` ask.
@@ -85,7 +90,35 @@ impl Shelf {
             // The first error is the one to tell; a left-over part is never read.
             std::fs::remove_file(&temporary).ok();
         }
-        written
+        written?;
+        self.make_room()
+    }
+
+    /// Removes the oldest truths until the rest keeps to [`FOLDER_BYTES`]; the one just written stays.
+    fn make_room(&self) -> std::io::Result<()> {
+        let own = self.file();
+        let mut kept: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
+        for entry in std::fs::read_dir(&self.folder)? {
+            let path = entry?.path();
+            if path.extension().is_some_and(|e| e == EXTENSION)
+                && path != own
+                && let Ok(about) = path.metadata()
+            {
+                let written = about.modified().unwrap_or(SystemTime::UNIX_EPOCH);
+                kept.push((written, about.len(), path));
+            }
+        }
+        kept.sort();
+        let mut bytes = own.metadata()?.len() + kept.iter().map(|(_, bytes, _)| bytes).sum::<u64>();
+        for (_, size, path) in kept {
+            if bytes <= FOLDER_BYTES {
+                break;
+            }
+            // Another process may have removed it already.
+            std::fs::remove_file(path).ok();
+            bytes -= size;
+        }
+        Ok(())
     }
 
     fn encode(&self, truth: &Truth) -> std::io::Result<Vec<u8>> {

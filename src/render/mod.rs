@@ -149,12 +149,17 @@ impl Renderer {
         &self.sources
     }
 
-    /// What would run, given what is cached now.
+    /// What would run, given what is cached now. Nothing does, but for the looks by which dials are chosen where `quality` asks for
+    /// an error or a time.
     ///
     /// # Errors
     /// When the scene cannot be rendered.
-    pub fn plan(&mut self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
-        let tuned = self.tuned(resolved, &CancellationToken::new())?;
+    pub fn plan(
+        &mut self,
+        resolved: &ResolvedScene,
+        cancel: &CancellationToken,
+    ) -> Result<Plan, RenderError> {
+        let tuned = self.tuned(resolved, cancel)?;
         let facts = SceneFacts::of(tuned.as_ref().map_or(resolved, |(scene, _)| scene))?;
         let mut plan = plan::plan_scene(&facts, self)?;
         plan.chosen = tuned.map(|(_, chosen)| chosen);
@@ -217,6 +222,9 @@ impl Renderer {
         stats.warnings.extend(run.warnings);
         if let Some((_, chosen)) = tuned {
             stats.warnings.extend(tune::unmet(asked, &chosen));
+            let adapter = format!("{}, {}", stats.adapter.name, stats.adapter.driver);
+            let calibrated = &self.calibration.adapter;
+            stats.warnings.extend(tune::foreign(calibrated, &adapter));
             stats.accuracy.get_or_insert_default().chosen = Some(chosen);
         }
         stats.time_ms.total = ms_since(started);

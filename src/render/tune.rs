@@ -10,9 +10,6 @@ use crate::stats::{ChosenDials, Warning};
 use crate::tuning::choose::{self, Prospect};
 use crate::tuning::{cost, ladder};
 
-/// Cells of the look that tells what error a time budget will buy.
-const BUDGET_LOOK: u32 = 64;
-
 impl Renderer {
     /// The scene with dials chosen for what `quality` asks, and what they are; `None` where it asks for nothing.
     pub(super) fn tuned(
@@ -75,12 +72,15 @@ impl Renderer {
         let most = self.most_cells(resolved)?;
         let (cells, meets) =
             choose::for_time(budget_ms, most, |cells| self.predicted_ms(resolved, cells))?;
-        let error = self
-            .look(resolved, BUDGET_LOOK.min(most), cancel)?
-            .unwrap_or(0.0);
-        let predicted = error
-            * self.calibration.error_margin
-            * (f64::from(BUDGET_LOOK.min(most)) / f64::from(cells)).powi(2);
+        // A look near enough to foretell from.
+        let look = (cells / 2).max(ladder::FEWEST_CELLS);
+        let error = self.look(resolved, look, cancel)?.unwrap_or(0.0);
+        let predicted = choose::foretold(
+            error * self.calibration.error_margin,
+            look,
+            cells,
+            resolved.scene.output.is_view(),
+        );
         let reason = if meets {
             format!("the most cells that are predicted to take at most {budget_ms} ms")
         } else {
@@ -118,8 +118,11 @@ impl Renderer {
             let mut rung = with_cells(resolved, middle);
             rung.scene.quality.estimate_error = true;
             let facts = SceneFacts::of(&rung)?;
+            let level_maps: u64 = plan::level_maps(&facts).iter().map(|k| k.bytes()).sum();
+            let fits = level_maps <= self.level_maps.stats().budget_bytes;
             match self.check_budget(&plan::plan_scene(&facts, self)?) {
-                Ok(()) => low = middle,
+                Ok(()) if fits => low = middle,
+                Ok(()) => high = middle,
                 Err(RenderError::OverBudget { .. }) => high = middle,
                 Err(error) => return Err(error),
             }
@@ -160,6 +163,18 @@ fn with_cells(resolved: &ResolvedScene, cells: u32) -> ResolvedScene {
     let mut rung = resolved.clone();
     rung.scene.quality = ladder::rung(&resolved.scene.quality, &resolved.scene.output, cells);
     rung
+}
+
+/// What to say where predictions rest on another machine.
+pub(super) fn foreign(calibrated: &str, adapter: &str) -> Option<Warning> {
+    (calibrated != adapter).then(|| {
+        Warning::new(
+            "calibrated_elsewhere",
+            format!(
+                "times are predicted from a calibration of {calibrated}, this is {adapter}: `caustica calibrate` makes one for it"
+            ),
+        )
+    })
 }
 
 /// What to say where a wish cannot be met.

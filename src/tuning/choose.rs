@@ -6,7 +6,7 @@ use super::ladder::{FEWEST_CELLS, MOST_CELLS};
 const FIRST_LOOK: u32 = 64;
 /// Order at which a map's error is taken to fall with the cells. It is 2 once the cells know the waves, and 1.75 … 1.95 on the way
 /// there (docs/accuracy.md).
-const MAP_ORDER: f64 = 1.85;
+const MAP_ORDER: f64 = 1.75;
 /// Errors above this say that the cells do not know the waves yet: nothing is foretold from them.
 const TRUSTED_BELOW: f64 = 0.1;
 /// Least and largest order that is believed of a view: its map's texels blur, and what they blur is sharp.
@@ -78,7 +78,13 @@ pub fn for_error<E>(
             let finer = (f64::from(cells) / f64::from(cells_before)).ln();
             order = ((error_before / error).ln() / finer).clamp(VIEW_ORDER.0, VIEW_ORDER.1);
         }
-        let needed = (f64::from(cells) * (error / target).powf(1.0 / order)).ceil();
+        // Towards fewer cells the larger order is the cautious one.
+        let falls = if error < target {
+            order.max(2.0)
+        } else {
+            order
+        };
+        let needed = (f64::from(cells) * (error / target).powf(1.0 / falls)).ceil();
         let known = if prospect.is_view {
             looks > 1 || needed <= f64::from(cells)
         } else {
@@ -89,14 +95,20 @@ pub fn for_error<E>(
             let chosen = needed.clamp(f64::from(FEWEST_CELLS), f64::from(most)) as u32;
             return Ok(Choice {
                 cells: chosen,
-                predicted_error: error * (f64::from(cells) / f64::from(chosen)).powf(order),
-                meets: needed <= f64::from(most),
+                predicted_error: error * (f64::from(cells) / f64::from(chosen)).powf(falls),
+                meets: needed <= f64::from(most) && (known || chosen <= cells),
                 looks,
             });
         }
         before = Some((cells, error));
         cells = ((needed / 3.0) as u32).max(2 * cells).min(most);
     }
+}
+
+/// Error with `cells` water cells, from that of a look with `look` of them; of a view cautiously.
+pub fn foretold(error: f64, look: u32, cells: u32, is_view: bool) -> f64 {
+    let order = if is_view { VIEW_ORDER.0 } else { MAP_ORDER };
+    error * (f64::from(look) / f64::from(cells)).powf(order)
 }
 
 /// The most cells, at most `most_cells`, that are predicted to stay under `budget_ms`, and whether they do; `predict` gives the ms of a frame with so many cells.

@@ -29,7 +29,11 @@ pub fn rung(given: &Quality, output: &Output, cells: u32) -> Quality {
                 Receiver::Object(_) => given.level_map_texels,
             },
         },
-        split_levels: cells.ilog2().saturating_sub(7).clamp(2, 4),
+        split_levels: match cells {
+            ..256 => 1,
+            256..1024 => 2,
+            _ => 3,
+        },
         target_error: None,
         time_budget_ms: None,
         ..given.clone()

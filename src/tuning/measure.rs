@@ -21,7 +21,7 @@ const TRUTH_ERROR: f64 = 2e-3;
 /// Cells at which estimates are held against the truth.
 const JUDGED_CELLS: [u32; 3] = [64, 128, 256];
 /// Errors above this are not judged: so few cells know little of the scene, and nobody asks for them.
-const JUDGED_BELOW: f64 = 0.12;
+const JUDGED_BELOW: f64 = 0.1;
 /// Added to the largest ratio seen: other scenes differ.
 const CAUTION: f64 = 1.1;
 

@@ -210,3 +210,25 @@ fn more_time_buys_more_cells_and_a_smaller_predicted_error() {
     assert!(long.predicted_error < 0.5 * short.predicted_error);
     assert!(short.predicted_ms <= 20.0 && long.predicted_ms <= 400.0);
 }
+
+#[test]
+fn an_error_that_the_memory_forbids_is_said_to_be_out_of_reach() {
+    let config = RenderConfig {
+        memory_budget_mib: 8,
+        ..RenderConfig::default()
+    };
+    let scene = scene_files::load("sine_pool", &[("/quality/target_error", "0.0005")]);
+    let frame = harness::render_with(&mut harness::new_renderer(&config), &scene);
+    let chosen = frame.stats.accuracy.unwrap().chosen.unwrap();
+    assert!(!chosen.meets && chosen.predicted_error > 5e-4, "{chosen:?}");
+    assert!(chosen.water_cells > 128, "the best that fits: {chosen:?}");
+    let warning = frame
+        .stats
+        .warnings
+        .iter()
+        .find(|w| w.code == "target_error_not_met");
+    assert_eq!(
+        warning.unwrap().pointer.as_deref(),
+        Some("/quality/target_error")
+    );
+}

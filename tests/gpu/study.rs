@@ -226,7 +226,7 @@ fn meshes_and_tilted_receivers_agree_with_the_reference() {
     value["output"] = output;
     let scene = scene_files::scene(value);
     let truth = truth_of(&scene, 5e-3);
-    let (study, _) = study(
+    let (found, _) = study(
         &mut harness::renderer(),
         &scene,
         &truth,
@@ -234,7 +234,16 @@ fn meshes_and_tilted_receivers_agree_with_the_reference() {
         false,
     )
     .unwrap();
-    let error = &study.sweeps[0].points[0].error;
+    let error = &found.sweeps[0].points[0].error;
     println!("{error:?}");
     assert!(error.relative_l1 < 0.05, "{error:?}");
+    // The map's own size is no dial of its error.
+    let other = study(
+        &mut harness::renderer(),
+        &scene,
+        &truth,
+        &["level_map_texels=32"],
+        false,
+    );
+    assert!(matches!(other.unwrap_err(), StudyError::Metric(_)));
 }

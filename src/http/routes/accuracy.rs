@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
 use axum::extract::State;
@@ -29,6 +29,7 @@ use crate::accuracy::plot::{convergence, error_against_time};
 use crate::accuracy::report::{self, ReportLinks};
 use crate::accuracy::study::{Study, StudyImages};
 use crate::accuracy::sweep::{self, Refusal, StudyError, SweepSettings, run_study};
+use crate::frame::Frame;
 use crate::jobs::JobError;
 use crate::reference::{ReferenceError, TruthSettings, truth};
 use crate::render::RenderError;
@@ -45,6 +46,8 @@ const OFFERED: [&str; 5] = [
 ];
 /// Most timed runs of a setting.
 const MOST_RUNS: u32 = 100;
+/// Time between two tries to get a place in a full queue.
+const FULL_QUEUE_PAUSE: Duration = Duration::from_millis(20);
 
 /// A scene, and which dials to sweep.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
@@ -234,10 +237,8 @@ fn study(
         other => ApiError::NoTruth(other.to_string()),
     })?;
     let mut render = |scene: ResolvedScene| {
-        let frame = cancel.run_until_cancelled(state.queue().render(scene, arrival));
         handle
-            .block_on(frame)
-            .unwrap_or(Err(JobError::Cancelled))
+            .block_on(one_frame(state, scene, cancel, arrival))
             .map_err(|error| match error {
                 JobError::Render(RenderError::OverBudget { .. }) => Refusal::Setting(error),
                 _ => Refusal::All(error),
@@ -264,7 +265,7 @@ fn refused(error: StudyError<JobError>) -> ApiError {
             issues: error.issues.into_iter().map(in_scene).collect(),
         }
         .into(),
-        StudyError::TooMany(_) => SceneError {
+        StudyError::TooMany(_) | StudyError::TooLarge(_) => SceneError {
             issues: vec![Issue::invalid(
                 "/dials",
                 error.to_string(),
@@ -274,6 +275,26 @@ fn refused(error: StudyError<JobError>) -> ApiError {
         .into(),
         StudyError::Metric(_) | StudyError::NothingLeft(_) => ApiError::NoTruth(error.to_string()),
     }
+}
+
+/// Renders in between other requests: where the queue is full, the study waits its turn.
+async fn one_frame(
+    state: &AppState,
+    scene: ResolvedScene,
+    cancel: &CancellationToken,
+    arrival: Instant,
+) -> Result<Frame, JobError> {
+    let turn = async {
+        loop {
+            let answer = state.queue().render(scene.clone(), arrival).await;
+            if !matches!(answer, Err(JobError::QueueFull { .. })) {
+                return answer;
+            }
+            tokio::time::sleep(FULL_QUEUE_PAUSE).await;
+        }
+    };
+    let answer = cancel.run_until_cancelled(turn).await;
+    answer.unwrap_or(Err(JobError::Cancelled))
 }
 
 fn respond(

@@ -155,7 +155,11 @@ impl RenderBackend for Fake {
         adapter()
     }
 
-    fn plan(&mut self, resolved: &ResolvedScene) -> Result<Plan, RenderError> {
+    fn plan(
+        &mut self,
+        resolved: &ResolvedScene,
+        _cancel: &CancellationToken,
+    ) -> Result<Plan, RenderError> {
         self.control.note("plan");
         Ok(Plan {
             passes: vec![PlannedPass {
