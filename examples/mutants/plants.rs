@@ -71,7 +71,7 @@ pub(crate) const ALL: &[Plant] = &[
     Plant {
         file: "src/tuning/choose.rs",
         from: "(error / target).powf(1.0 / falls)",
-        to: "(target / error).powf(1.0 / order)",
+        to: "(target / error).powf(1.0 / falls)",
         binary: "cpu",
         tests: &["tuning::the_fewest_cells_under_the_target_are_chosen"],
         what: "a smaller wanted error chooses fewer cells",

@@ -25,10 +25,11 @@ const ROUNDING: f64 = 1e-6;
 
 /// Relative L1 error of the finer of the two: Richardson's extrapolation at second order.
 pub fn estimate_error(frame: &FrameComparison) -> f64 {
-    let hidden = if frame.is_view {
-        HIDDEN_IN_VIEW
+    // Of a view the halved texels decide, of a map the cells.
+    let (hidden, finer) = if frame.is_view {
+        (HIDDEN_IN_VIEW, 2.0)
     } else {
-        HIDDEN
+        (HIDDEN, frame.cells_ratio)
     };
-    ROUNDING + hidden * frame.difference / (frame.cells_ratio.powf(ORDER) - 1.0)
+    ROUNDING + hidden * frame.difference / (f64::powf(finer, ORDER) - 1.0)
 }

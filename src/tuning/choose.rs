@@ -8,7 +8,7 @@ const FIRST_LOOK: u32 = 64;
 /// there (docs/accuracy.md).
 const MAP_ORDER: f64 = 1.75;
 /// Errors above this say that the cells do not know the waves yet: nothing is foretold from them.
-const TRUSTED_BELOW: f64 = 0.1;
+const TRUSTED_BELOW: f64 = 0.06;
 /// Least and largest order that is believed of a view: its map's texels blur, and what they blur is sharp.
 const VIEW_ORDER: (f64, f64) = (0.5, 2.0);
 /// Times the cells of a look beyond which its error is not extrapolated: another look comes first.

@@ -25,7 +25,7 @@ pub fn rung(given: &Quality, output: &Output, cells: u32) -> Quality {
         level_map_texels: match output {
             Output::View(_) => (cells.next_power_of_two() / 2).clamp(128, 1024),
             Output::IrradianceMap(map) => match map.receiver {
-                Receiver::Floor(_) => (cells.next_power_of_two() / 2).clamp(SHADOW_TEXELS, 512),
+                Receiver::Floor(_) => (cells.next_power_of_two() / 2).clamp(SHADOW_TEXELS, 256),
                 Receiver::Object(_) => given.level_map_texels,
             },
         },
