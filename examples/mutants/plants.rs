@@ -46,7 +46,7 @@ pub(crate) const ALL: &[Plant] = &[
         from: "u + v > 1.0",
         to: "u - v > 1.0",
         binary: "cpu",
-        tests: &["reference_meshes::the_shadow_of_a_box_is_its_footprint"],
+        tests: &["reference_meshes::the_shadow_of_a_triangle_is_half_of_its_rectangle"],
         what: "triangles of the reference reach beyond their third edge",
     },
     Plant {
@@ -97,7 +97,7 @@ pub(crate) const ALL: &[Plant] = &[
         from: "+ edges.dy.z * mean_clamped(",
         to: "- edges.dy.z * mean_clamped(",
         binary: "gpu",
-        tests: &["sine_pool::error_falls_with_the_square_of_the_cells"],
+        tests: &["footprint::few_cells_over_many_texels"],
         what: "the third edge of a footprint counts against its texels",
     },
     Plant {

@@ -92,6 +92,17 @@ fn shadow_m2(resolved: &ResolvedScene, rays: u64) -> f64 {
 }
 
 #[test]
+fn the_shadow_of_a_triangle_is_half_of_its_rectangle() {
+    // A box cannot tell a triangle from the rectangle around it: its faces have both halves.
+    let corners = [(-0.3, -0.2), (0.3, -0.2), (-0.3, 0.2)].map(|(x, z)| Vec3::new(x, 0.0, z));
+    let sail = mesh(DVec3::ZERO, &[corners]);
+    let place = r#"{ "mesh": "b", "translation_m": [0.1, -1, -0.2] }"#;
+    let shadow_m2 = shadow_m2(&scene(90.0, place, vec![sail]), 2_000_000);
+    let triangle_m2 = 0.5 * 0.6 * 0.4;
+    assert!((shadow_m2 / triangle_m2 - 1.0).abs() < 1e-3, "{shadow_m2}");
+}
+
+#[test]
 fn the_shadow_of_a_box_is_its_footprint() {
     let block = a_box(DVec3::ZERO, Vec3::new(0.31, 0.2, 0.17));
     let scene = scene(
