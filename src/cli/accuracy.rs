@@ -80,7 +80,7 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
         &|part| progress.set_position((1000.0 * part) as u64),
         &|| false,
     )
-    .map_err(|error| no_truth(args, error))?;
+    .map_err(|error| no_truth(args, &error))?;
     let mut renderer = Renderer::new(config)?;
     let never = CancellationToken::new();
     let mut render = |scene: ResolvedScene| {
@@ -137,7 +137,7 @@ fn cache_folder() -> Option<PathBuf> {
     Some(folder.join("caustica").join("truth"))
 }
 
-fn no_truth(args: &AccuracyArgs, error: ReferenceError) -> CliError {
+fn no_truth(args: &AccuracyArgs, error: &ReferenceError) -> CliError {
     CliError::Study(format!(
         "{}: no float64 truth: {error}",
         args.scene.scene.display()
