@@ -89,14 +89,16 @@ fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
             sum += sun_in_air(p, normal);
             for (var c = 0; c < 3; c++) { sum[c] += sky_irradiance(view.sky_radiance[c], 1.0, 0.0, 0.0, 1.0, normal.y, 1.0); }
         } else {
+            let per_sun = 1u + view.instance_count * view.layers;
             for (var s = 0u; s < view.sun_count; s++) {
-                let r = all_receivers[s * view.receiver_count + u32(receiver)];
                 if receiver == FLOOR {
                     if s > 0u { break; }
+                    let r = all_receivers[0];
                     let uv = to_map(r, p).xy;
                     if any(uv < vec2f(0.0)) || any(uv > vec2f(f32(r.map_width), f32(r.map_height))) { outside = 1.0; }
                     sum += floor_irradiance(r, uv);
                 } else {
+                    let r = all_receivers[s * per_sun + 1u + u32(receiver - 1) * view.layers];
                     sum += object_irradiance(r, p, normal);
                 }
             }

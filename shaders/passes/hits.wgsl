@@ -20,6 +20,6 @@ fn hits_main(@builtin(global_invocation_id) id: vec3u) {
     let vertex = id.y * side + id.x;
     let xz = vertex_m(vec2f(id.xy));
     let origin = vec3f(xz.x, surface[vertex].x, xz.y);
-    let hit = trace_light(origin, beams[vertex].xyz, light.receiver_count, light.has_floor == 1u);
+    let hit = trace_light(origin, beams[vertex].xyz, light.object_count, light.has_floor == 1u);
     hits[vertex] = vec4f(hit.uv, hit.t, f32(hit.receiver));
 }

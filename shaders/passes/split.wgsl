@@ -50,7 +50,7 @@ fn corner_at(cells: vec2f) -> Corner {
     c.origin = vec3f(xz.x, water.x, xz.y);
     c.direction = refract_direction(-light.to_light.xyz, normal, light.ior).xyz;
     c.transmittance = fresnel_transmittance(dot(normal, light.to_light.xyz), light.ior);
-    c.hit = trace_light(c.origin, c.direction, light.receiver_count, light.has_floor == 1u);
+    c.hit = trace_light(c.origin, c.direction, light.object_count, light.has_floor == 1u);
     return c;
 }
 

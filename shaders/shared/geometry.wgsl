@@ -1,12 +1,12 @@
-// Meshes as seen by the camera: instances of triangle hierarchies with skip pointers.
+// Meshes as rays meet them: a hierarchy over the instances, and in each instance the hierarchy over its mesh's triangles; both with
+// skip pointers, so that they are walked without a stack.
 
 struct Instance {
     mesh_x: vec4f, // rows of mesh_from_local
     mesh_y: vec4f,
     mesh_z: vec4f,
     albedo: vec4f, // w = 1: overrides the mesh's materials
-    min_m: vec4f,  // bounds in local space
-    max_m: vec4f,
+    nodes: array<vec4u, 4>, // two nodes of the hierarchy over the instances: instance i holds nodes 2 i and 2 i + 1
     first_node: u32,     // in vec4 units of `geometry`
     node_count: u32,
     first_triangle: u32, // in vec4 units of `geometry`
@@ -64,16 +64,22 @@ struct MeshHit {
 }
 
 // Nearest hit with one instance between t_min and t_max; t = t_max: none. The direction keeps its local length, so t is in metres.
-fn trace_instance(instance: Instance, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> MeshHit {
+fn trace_instance(index: u32, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> MeshHit {
     var best = MeshHit(t_max, 0u, 0.0, 0.0);
+    let mesh_x = instances[index].mesh_x;
+    let mesh_y = instances[index].mesh_y;
+    let mesh_z = instances[index].mesh_z;
+    let first_node = instances[index].first_node;
+    let node_count = instances[index].node_count;
+    let first_triangle = instances[index].first_triangle;
     let o4 = vec4f(origin, 1.0);
-    let o = vec3f(dot(instance.mesh_x, o4), dot(instance.mesh_y, o4), dot(instance.mesh_z, o4));
-    let d = vec3f(dot(instance.mesh_x.xyz, direction), dot(instance.mesh_y.xyz, direction), dot(instance.mesh_z.xyz, direction));
+    let o = vec3f(dot(mesh_x, o4), dot(mesh_y, o4), dot(mesh_z, o4));
+    let d = vec3f(dot(mesh_x.xyz, direction), dot(mesh_y.xyz, direction), dot(mesh_z.xyz, direction));
     let inverse = safe_inverse(d);
     var node = 0u;
-    while node < instance.node_count {
-        let low = geometry[instance.first_node + 2u * node];
-        let high = geometry[instance.first_node + 2u * node + 1u];
+    while node < node_count {
+        let low = geometry[first_node + 2u * node];
+        let high = geometry[first_node + 2u * node + 1u];
         if !box_met(bitcast<vec3f>(low.xyz), bitcast<vec3f>(high.xyz), o, inverse, best.t) {
             node = high.w;
             continue;
@@ -82,7 +88,7 @@ fn trace_instance(instance: Instance, origin: vec3f, direction: vec3f, t_min: f3
             node = low.w;
             continue;
         }
-        let at = instance.first_triangle + 4u * (low.w & ~LEAF);
+        let at = first_triangle + 4u * (low.w & ~LEAF);
         let met = triangle_met(
             bitcast<vec3f>(geometry[at].xyz), bitcast<vec3f>(geometry[at + 1u].xyz), bitcast<vec3f>(geometry[at + 2u].xyz), o, d);
         if met.x > t_min && met.x < best.t { best = MeshHit(met.x, at, met.y, met.z); }
@@ -91,30 +97,57 @@ fn trace_instance(instance: Instance, origin: vec3f, direction: vec3f, t_min: f3
     return best;
 }
 
+// Where the walk over the hierarchy of `count` instances ends.
+fn instance_nodes(count: u32) -> u32 {
+    return select(2u * count - 1u, 0u, count == 0u);
+}
+
+// One step of that walk: an instance that the ray may meet before t_max, or NO_INSTANCE, and the node to go on with.
+struct InstanceStep {
+    index: u32,
+    next: u32,
+}
+
+const NO_INSTANCE: u32 = 0xffffffffu;
+
+fn step_instances(node: u32, origin: vec3f, inverse: vec3f, t_max: f32) -> InstanceStep {
+    let at = 2u * (node & 1u);
+    let low = instances[node >> 1u].nodes[at];
+    let high = instances[node >> 1u].nodes[at + 1u];
+    if !box_met(bitcast<vec3f>(low.xyz), bitcast<vec3f>(high.xyz), origin, inverse, t_max) { return InstanceStep(NO_INSTANCE, high.w); }
+    if (low.w & LEAF) == 0u { return InstanceStep(NO_INSTANCE, low.w); }
+    return InstanceStep(low.w & ~LEAF, high.w);
+}
+
 // Nearest object between t_min and t_max.
 fn trace_objects(count: u32, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> Seen {
     var seen = Seen(t_max, -1, vec3f(0.0), vec3f(0.0));
     let inverse = safe_inverse(direction);
-    for (var i = 0u; i < count; i++) {
-        let instance = instances[i];
-        if !box_met(instance.min_m.xyz, instance.max_m.xyz, origin, inverse, seen.t) { continue; }
-        let hit = trace_instance(instance, origin, direction, t_min, seen.t);
+    let end = instance_nodes(count);
+    var node = 0u;
+    while node < end {
+        let step = step_instances(node, origin, inverse, seen.t);
+        node = step.next;
+        if step.index == NO_INSTANCE { continue; }
+        let i = step.index;
+        let hit = trace_instance(i, origin, direction, t_min, seen.t);
         if hit.t >= seen.t { continue; }
         let w = 1.0 - hit.u - hit.v;
         let n_mesh = w * unpack_normal(geometry[hit.triangle].w) + hit.u * unpack_normal(geometry[hit.triangle + 1u].w)
             + hit.v * unpack_normal(geometry[hit.triangle + 2u].w);
         // Normals go with the transposed inverse of local_from_mesh, which is the transpose of mesh_from_local.
-        let n = n_mesh.x * instance.mesh_x.xyz + n_mesh.y * instance.mesh_y.xyz + n_mesh.z * instance.mesh_z.xyz;
+        let n = n_mesh.x * instances[i].mesh_x.xyz + n_mesh.y * instances[i].mesh_y.xyz + n_mesh.z * instances[i].mesh_z.xyz;
         let facing = normalize(n);
         // Which side is seen is the triangle's to say: a shading normal turns away at silhouettes.
         let corner = bitcast<vec3f>(geometry[hit.triangle].xyz);
         let flat_mesh = cross(bitcast<vec3f>(geometry[hit.triangle + 1u].xyz) - corner, bitcast<vec3f>(geometry[hit.triangle + 2u].xyz) - corner);
-        let flat = flat_mesh.x * instance.mesh_x.xyz + flat_mesh.y * instance.mesh_y.xyz + flat_mesh.z * instance.mesh_z.xyz;
+        let flat = flat_mesh.x * instances[i].mesh_x.xyz + flat_mesh.y * instances[i].mesh_y.xyz + flat_mesh.z * instances[i].mesh_z.xyz;
         let outward = select(flat, -flat, dot(flat, n) < 0.0);
         seen.t = hit.t;
         seen.receiver = i32(i) + 1;
         seen.normal = select(facing, -facing, dot(outward, direction) > 0.0);
-        seen.albedo = select(bitcast<vec3f>(geometry[hit.triangle + 3u].xyz), instance.albedo.xyz, instance.albedo.w > 0.5);
+        let albedo = instances[i].albedo;
+        seen.albedo = select(bitcast<vec3f>(geometry[hit.triangle + 3u].xyz), albedo.xyz, albedo.w > 0.5);
     }
     return seen;
 }

@@ -7,19 +7,24 @@ struct Light {
     cell_m: vec2f,             // size of a water cell
     cells: u32,                // cells along each side of the window
     wave_count: u32,
-    receiver_count: u32,
+    object_count: u32,
     has_floor: u32,
     ior: f32,
     flux_scale: f32,           // counts per m² of flux at unit irradiance
     energy_scale: f32,         // counts per m² in the energy account
     channels: u32,             // 1 when all channels fade alike, else 3
     split_levels: u32,
-    pad: u32,
+    layers: u32,               // receivers of an object: its surfaces along the light, nearest first
     wide_texels: u32,          // footprints with more texels than this go to a workgroup of their own
     triangle_scale: f32,       // workgroup counts per m² in the energy account
 }
 
 @group(0) @binding(0) var<uniform> light: Light;
+
+// The first of an object's receivers.
+fn first_receiver_of(object: u32) -> u32 {
+    return 1u + object * light.layers;
+}
 
 // Local (x, z) of grid vertex (i, j), which need not be whole.
 fn vertex_m(ij: vec2f) -> vec2f {

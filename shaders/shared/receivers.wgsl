@@ -1,6 +1,7 @@
 // Receivers of light and what a ray strikes first.
 //
-// Receiver 0 is the floor plane, the rest are objects behind their level maps. Map space of a receiver: (u, v) in texels of
+// Receiver 0 is the floor plane, the rest are objects behind their level maps, each with one receiver per layer: object k has
+// receivers 1 + k·layers … Map space of a receiver: (u, v) in texels of
 // its irradiance map, s along the map's axis (floor: metres, below the plane is s > 0; objects: units of the mesh).
 
 const NO_RECEIVER: i32 = -1;
@@ -23,8 +24,8 @@ struct Receiver {
     axis: vec4f,            // unit direction of the map's axis in local space
     irradiance_offset: u32, // first texel in the irradiance array
     s_per_m: f32,           // units of s per metre along the axis
-    pad_0: u32,
-    pad_1: u32,
+    layer: u32,             // of the level map: 0 is the nearest
+    pad: u32,
     floor_min_m: vec2f,     // floor: the rectangle in local (x, z)
     floor_max_m: vec2f,
 }

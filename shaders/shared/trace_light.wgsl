@@ -3,7 +3,35 @@
 
 const FAR_M: f32 = 1e6;
 
-// First hit over all `count` receivers; `has_floor` tells whether receiver 0 is there.
+// Where the ray strikes object `index` nearer than t_max, or NO_RECEIVER.
+fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> Hit {
+    let nothing = Hit(vec2f(0.0), t_max, NO_RECEIVER);
+    let number = first_receiver_of(index);
+    let r = receivers[number];
+    if r.level_count == 0u { return nothing; }
+    let o = to_map(r, origin);
+    let d = direction_to_map(r, direction);
+    let t = march_level_map(r, o, d, 0.0, t_max);
+    if t == AT_EDGE {
+        let met = trace_instance(index, origin, direction, 0.0, t_max);
+        if met.t >= t_max { return nothing; }
+        return Hit((o + d * met.t).xy, met.t, i32(number));
+    }
+    if t < 0.0 || t >= t_max { return nothing; }
+    // The march ends on a flat texel; once more with the depth between texels.
+    var t_fine = t;
+    if d.z > 1e-6 {
+        let uv = (o + d * t).xy;
+        let slope_gap = 4.0 * (r.s_max - r.s_min) / f32(r.map_width);
+        let s = smooth_front(r, uv, slope_gap);
+        let candidate = (s - o.z) / d.z;
+        // Only where the ray came through the front, not through a side.
+        if abs(candidate - t) * d.z < slope_gap && candidate > 0.0 { t_fine = candidate; }
+    }
+    return Hit((o + d * t_fine).xy, t_fine, i32(number));
+}
+
+// First hit over the floor, if there is one, and `count` objects.
 fn trace_light(origin: vec3f, direction: vec3f, count: u32, has_floor: bool) -> Hit {
     var best = Hit(vec2f(0.0), FAR_M, NO_RECEIVER);
     var beside = Hit(vec2f(0.0), FAR_M, NO_RECEIVER); // on the floor's plane, beside its rectangle
@@ -16,29 +44,15 @@ fn trace_light(origin: vec3f, direction: vec3f, count: u32, has_floor: bool) -> 
             if all(p.xz >= r.floor_min_m) && all(p.xz <= r.floor_max_m) { best = hit; } else { beside = hit; }
         }
     }
-    for (var i = 1u; i < count; i++) {
-        let r = receivers[i];
-        if r.level_count == 0u { continue; }
-        let o = to_map(r, origin);
-        let d = direction_to_map(r, direction);
-        let t = march_level_map(r, o, d, 0.0, best.t);
-        if t == AT_EDGE {
-            let met = trace_instance(instances[i - 1u], origin, direction, 0.0, best.t);
-            if met.t < best.t { best = Hit((o + d * met.t).xy, met.t, i32(i)); }
-            continue;
-        }
-        if t < 0.0 || t >= best.t { continue; }
-        // The march ends on a flat texel; once more with the depth between texels.
-        var t_fine = t;
-        if d.z > 1e-6 {
-            let uv = (o + d * t).xy;
-            let slope_gap = 4.0 * (r.s_max - r.s_min) / f32(r.map_width);
-            let s = smooth_front(r, uv, slope_gap);
-            let candidate = (s - o.z) / d.z;
-            // Only where the ray came through the front, not through a side.
-            if abs(candidate - t) * d.z < slope_gap && candidate > 0.0 { t_fine = candidate; }
-        }
-        best = Hit((o + d * t_fine).xy, t_fine, i32(i));
+    let inverse = safe_inverse(direction);
+    let end = instance_nodes(count);
+    var node = 0u;
+    while node < end {
+        let step = step_instances(node, origin, inverse, best.t);
+        node = step.next;
+        if step.index == NO_INSTANCE { continue; }
+        let hit = trace_level_map(step.index, origin, direction, best.t);
+        if hit.receiver != NO_RECEIVER { best = hit; }
     }
     if best.receiver == NO_RECEIVER { return beside; }
     return best;

@@ -26,7 +26,7 @@ struct View {
     ior: f32,
     sky_transmittance: f32,
     sky_path_factor: f32,
-    receiver_count: u32,  // per sun, floor included
+    layers: u32,          // receivers of an object: its surfaces along the light, nearest first
     sample_index: u32,    // samples that the picture already holds
     sample_offset: vec2f, // of the ray from the pixel's middle, pixels
 }

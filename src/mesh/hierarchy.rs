@@ -54,7 +54,25 @@ pub fn build(triangles: &[Triangle]) -> Vec<HierarchyNode> {
         .fold(0.0, |largest: f32, p| largest.max(p.abs().max_element()));
     // The triangle test rounds corners by about 2⁻²⁴ of their distance: what it counts as hit may lie this far outside.
     let margin_m = ROUNDING * largest_m;
-    let mut shapes: Vec<Shape> = triangles.iter().map(|t| Shape::of(t, margin_m)).collect();
+    over(
+        triangles
+            .iter()
+            .map(|t| Shape::of_triangle(t, margin_m))
+            .collect(),
+    )
+}
+
+/// Builds a hierarchy over boxes (lower and upper corner each); a leaf then holds the box's index. Boxes are taken as they are.
+pub fn build_over_boxes(boxes: &[[Vec3; 2]]) -> Vec<HierarchyNode> {
+    over(
+        boxes
+            .iter()
+            .map(|[min, max]| Shape::new(*min, *max))
+            .collect(),
+    )
+}
+
+fn over(mut shapes: Vec<Shape>) -> Vec<HierarchyNode> {
     let tree: Bvh<f32, 3> = BoundingHierarchy::build_par(&mut shapes);
     let Some(root) = bounds(&shapes) else {
         return Vec::new();
@@ -204,10 +222,12 @@ struct Shape {
 }
 
 impl Shape {
-    fn of(triangle: &Triangle, margin_m: f32) -> Self {
+    fn of_triangle(triangle: &Triangle, margin_m: f32) -> Self {
         let [a, b, c] = triangle.positions_m;
-        let min = a.min(b).min(c) - margin_m;
-        let max = a.max(b).max(c) + margin_m;
+        Self::new(a.min(b).min(c) - margin_m, a.max(b).max(c) + margin_m)
+    }
+
+    fn new(min: Vec3, max: Vec3) -> Self {
         Self {
             aabb: Aabb::with_bounds(min.to_array().into(), max.to_array().into()),
             node: 0,

@@ -89,7 +89,7 @@ fn view_uniform(facts: &SceneFacts, run: Run<'_>) -> Vec<u8> {
         ior: facts.ior as f32,
         sky_transmittance: facts.sky_transmittance as f32,
         sky_path_factor: facts.sky_path_factor as f32,
-        receiver_count: 1 + facts.objects.len() as u32,
+        layers: facts.quality.layers,
         sample_index,
         sample_offset: offset.map(|o| o as f32),
     };

@@ -2,6 +2,7 @@
 
 use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::Comparison;
+use super::maps::MapLayout;
 use super::slot::{self, Slot};
 use super::surface::wanted_for_sun;
 use crate::scene::Receiver;
@@ -72,33 +73,29 @@ pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<(Comparison, f64
             size.x * size.y / (f64::from(fine.width) * f64::from(fine.height)),
         );
     }
-    let side = facts.quality.level_map_texels;
-    let mut nth = 0;
-    for sun in &facts.suns {
+    let (fine, low) = (MapLayout::of(facts), MapLayout::of(coarse));
+    for (index, sun) in facts.suns.iter().enumerate() {
         for (object, level_box) in sun.boxes.iter().enumerate() {
             let Some(level_box) = level_box else { continue };
+            let side = level_box.key.texels;
             let counts = match facts.map_receiver {
                 None => true,
                 Some(Receiver::Object(wanted)) => wanted as usize == object,
                 Some(Receiver::Floor(_)) => false,
             };
-            if counts {
-                let place = |facts: &SceneFacts| {
-                    slot::floor_texels(facts) + nth * slot::object_texels(facts)
-                };
+            for layer in (0..facts.quality.layers).filter(|_| counts) {
                 let comparison = Comparison {
                     fine_width: side,
                     fine_height: side,
                     coarse_width: side,
                     coarse_height: side,
-                    first_fine: place(facts),
-                    first_coarse: place(coarse),
+                    first_fine: fine.irradiance_of(index, object, layer),
+                    first_coarse: low.irradiance_of(index, object, layer),
                     blocks: 1,
                     ..Comparison::default()
                 };
                 add(comparison, 1.0 / level_box.density_per_flux);
             }
-            nth += 1;
         }
     }
     all

@@ -30,10 +30,14 @@ pub const PASS: PassDesc = PassDesc {
             Some(Receiver::Object(_)) => 1,
         };
         if wet > 0 {
-            let side = facts.quality.level_map_texels;
+            let most = facts
+                .wet_objects()
+                .map(|o| facts.objects[o].map_texels)
+                .max();
             parts.push(format!(
-                "{wet} object map{} of {side}² texels",
-                if wet == 1 { "" } else { "s" }
+                "{wet} object map{} of {}² texels",
+                if wet == 1 { "" } else { "s" },
+                most.unwrap_or(0)
             ));
         }
         Ok(parts.join(" and "))
@@ -41,12 +45,15 @@ pub const PASS: PassDesc = PassDesc {
     steps: |facts, run| resolve_steps("irradiance_main", facts, run),
 };
 
-/// Whether anything reads the finished map of receiver `number` (0 the floor, then the objects): a camera reads all, a map is of one.
+/// Whether anything reads the finished map of receiver `number` (0 the floor, then the objects' layers): a camera reads all, a map
+/// is of one.
 fn is_asked_for(facts: &SceneFacts, number: usize) -> bool {
     match facts.map_receiver {
         None => true,
         Some(Receiver::Floor(_)) => number == 0,
-        Some(Receiver::Object(index)) => number == index as usize + 1,
+        Some(Receiver::Object(index)) => {
+            number > 0 && (number - 1) / facts.quality.layers as usize == index as usize
+        }
     }
 }
 

@@ -3,7 +3,8 @@
 use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::Span;
 use super::light::light_uniform;
-use super::slot::{self, Slot};
+use super::maps::MapLayout;
+use super::slot::Slot;
 use super::surface::wanted_for_sun;
 
 /// Texels of a workgroup, as in the shader.
@@ -22,7 +23,7 @@ pub const PASS: PassDesc = PassDesc {
             return Vec::new();
         };
         let span = Span {
-            texel_count: slot::flux_texels(facts),
+            texel_count: u32::try_from(MapLayout::of(facts).flux_texels()).unwrap_or(u32::MAX),
             ..Span::default()
         };
         let groups = span.texel_count.div_ceil(TEXELS_PER_GROUP);

@@ -1,11 +1,9 @@
 //! What the passes that follow a sun share: its uniform, and the receivers' maps.
 
 use super::gpu_data::{Light, Receiver, vec2, vec4};
-use super::slot;
+use super::maps::MapLayout;
 use crate::scene::facts::{SceneFacts, SunFacts};
 
-/// Size of a receiver on the GPU.
-pub const RECEIVER_BYTES: u64 = size_of::<Receiver>() as u64;
 /// Footprints of more texels than this get workgroups of their own.
 const WIDE_TEXELS: u32 = 1024;
 /// Counts that the largest possible beam makes in narrow sums: 2³⁰, so that a deposit fits u32 with room for rounding.
@@ -47,14 +45,14 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
         cell_m: vec2(sun.window.size() / f64::from(cells)),
         cells,
         wave_count: facts.surface.components.len() as u32,
-        receiver_count: 1 + facts.objects.len() as u32,
+        object_count: facts.objects.len() as u32,
         has_floor: u32::from(facts.floor.is_some()),
         ior: facts.ior as f32,
         flux_scale: flux_scale(facts, index, wide_sums) as f32,
         energy_scale: energy_scale(facts, index) as f32,
         channels: facts.channels(),
         split_levels: facts.quality.split_levels,
-        pad: 0,
+        layers: facts.quality.layers,
         wide_texels: WIDE_TEXELS,
         triangle_scale: (BEAM_ACCOUNT_COUNTS / beam_m2).log2().floor().exp2() as f32,
     };
@@ -116,40 +114,43 @@ pub fn has_wrapped(facts: &SceneFacts, index: usize, missing_m2: f64) -> bool {
     missing_m2 > 0.5 * WRAP_COUNTS / flux_scale(facts, index, false)
 }
 
-/// The receivers of one sun: the floor, then the objects; `level_map_offset` tells where in the arena an object's map lies.
+/// The receivers of one sun: the floor, then those of the objects, one per layer; `level_map_offset` tells where in the arena an
+/// object's map lies.
 pub fn receivers(
     facts: &SceneFacts,
     index: usize,
     level_map_offset: impl Fn(usize) -> u32,
 ) -> Vec<Receiver> {
     let mut all = vec![floor_receiver(facts)];
-    let texels = slot::object_texels(facts);
-    let wet = facts.wet_objects().count() as u32;
-    let mut nth_wet = 0;
+    let maps = MapLayout::of(facts);
+    let layers = facts.quality.layers;
     for (object, level_box) in facts.suns[index].boxes.iter().enumerate() {
         let Some(level_box) = level_box else {
-            all.push(Receiver::default());
+            all.extend((0..layers).map(|_| Receiver::default()));
             continue;
         };
         let row = |r: glam::DVec4| [r.x as f32, r.y as f32, r.z as f32, r.w as f32];
-        all.push(Receiver {
+        let receiver = Receiver {
             u_row: row(level_box.map_from_local[0]),
             v_row: row(level_box.map_from_local[1]),
             s_row: row(level_box.map_from_local[2]),
             map_width: level_box.key.texels,
             map_height: level_box.key.texels,
-            map_offset: slot::floor_texels(facts) + nth_wet * texels,
             level_map_offset: level_map_offset(object),
             s_min: level_box.s_range[0] as f32,
             s_max: level_box.s_range[1] as f32,
             level_count: level_box.key.levels(),
             density_per_flux: level_box.density_per_flux as f32,
             axis: vec4(level_box.axis, 0.0),
-            irradiance_offset: slot::floor_texels(facts) + (index as u32 * wet + nth_wet) * texels,
             s_per_m: level_box.s_per_m as f32,
             ..Receiver::default()
-        });
-        nth_wet += 1;
+        };
+        all.extend((0..layers).map(|layer| Receiver {
+            map_offset: maps.flux_of(object, layer),
+            irradiance_offset: maps.irradiance_of(index, object, layer),
+            layer,
+            ..receiver
+        }));
     }
     all
 }

@@ -18,6 +18,7 @@ pub mod landed;
 pub mod level_map;
 pub mod level_map_pyramid;
 pub mod light;
+pub mod maps;
 pub mod shade;
 pub mod shaders;
 pub mod slot;

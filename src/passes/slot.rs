@@ -1,5 +1,6 @@
 //! What flows between the passes: the one table of buffers, with what they hold, in which unit, and how large they are.
 
+use super::maps::MapLayout;
 use crate::scene::facts::SceneFacts;
 
 /// Words at the head of a queue: the workgroups of the dispatch that empties it, and the count.
@@ -141,7 +142,11 @@ impl Slot {
                 "hierarchy nodes and triangles, m",
                 Lifetime::Upload,
             ),
-            Self::Instances => ("instances", "placement, bounds m, albedo", Lifetime::Upload),
+            Self::Instances => (
+                "instances",
+                "placement, hierarchy over all m, albedo",
+                Lifetime::Upload,
+            ),
             Self::Receivers => (
                 "receivers",
                 "map of each receiver for the sun at work",
@@ -266,10 +271,10 @@ impl Slot {
             Self::SplitQueue => {
                 4 * (SPLIT_HEAD_WORDS + 2 * cells * cells + 4 * u64::from(split_parts(facts)))
             }
-            Self::Flux => 8 * channels * u64::from(flux_texels(facts)),
+            Self::Flux => 8 * channels * MapLayout::of(facts).flux_texels(),
             Self::Energy => 8 * ENERGY_TERMS,
-            Self::Irradiance => 12 * irradiance_texels(facts),
-            Self::CoarseIrradiance => 12 * irradiance_texels(&facts.coarse()),
+            Self::Irradiance => 12 * MapLayout::of(facts).irradiance_texels(),
+            Self::CoarseIrradiance => 12 * MapLayout::of(&facts.coarse()).irradiance_texels(),
             Self::Differences => 16 * u64::from(super::estimate::groups(facts)),
             Self::VisiblePosition
             | Self::VisibleNormal
@@ -279,13 +284,11 @@ impl Slot {
             | Self::Radiance => 16 * pixels,
             Self::Waves => 16 * facts.surface.components.len() as u64,
             // At least one: a binding may not be shorter than an element of its array.
-            Self::Instances => 112 * facts.objects.len().max(1) as u64,
-            Self::Receivers => super::light::RECEIVER_BYTES * (1 + facts.objects.len() as u64),
-            Self::AllReceivers => {
-                super::light::RECEIVER_BYTES
-                    * (1 + facts.objects.len() as u64)
-                    * facts.suns.len().max(1) as u64
+            Self::Instances => {
+                size_of::<super::gpu_data::Instance>() as u64 * facts.objects.len().max(1) as u64
             }
+            Self::Receivers => receiver_bytes(facts),
+            Self::AllReceivers => receiver_bytes(facts) * facts.suns.len().max(1) as u64,
             Self::Geometry => facts.geometry_bytes,
             Self::LevelMaps => 0,
         }
@@ -304,7 +307,7 @@ pub fn readback_bytes(facts: &SceneFacts) -> u64 {
             16 * u64::from(camera.width) * u64::from(band_rows(camera.width, camera.height))
         }
         None if facts.suns.is_empty() => 0,
-        None => 12 * irradiance_texels(facts),
+        None => 12 * MapLayout::of(facts).irradiance_texels(),
     }
 }
 
@@ -324,27 +327,10 @@ pub fn split_parts(facts: &SceneFacts) -> u32 {
     u32::try_from(parts).unwrap_or(u32::MAX)
 }
 
-/// Texels of the floor's map.
-pub fn floor_texels(facts: &SceneFacts) -> u32 {
-    facts.floor_map.map_or(0, |map| map.width * map.height)
-}
-
-/// Texels of one object's map.
-pub fn object_texels(facts: &SceneFacts) -> u32 {
-    facts.quality.level_map_texels * facts.quality.level_map_texels
-}
-
-/// Texels of all maps of one sun.
-pub fn flux_texels(facts: &SceneFacts) -> u32 {
-    let objects = u32::try_from(facts.wet_objects().count()).unwrap_or(u32::MAX);
-    floor_texels(facts).saturating_add(object_texels(facts).saturating_mul(objects))
-}
-
-/// Texels of all irradiance maps: one for the floor, one per object and sun.
-pub fn irradiance_texels(facts: &SceneFacts) -> u64 {
-    let objects = facts.wet_objects().count() as u64;
-    u64::from(floor_texels(facts))
-        + u64::from(object_texels(facts)) * objects * facts.suns.len() as u64
+/// Bytes of the receivers of one sun.
+fn receiver_bytes(facts: &SceneFacts) -> u64 {
+    let receivers = 1 + facts.objects.len() as u64 * u64::from(facts.quality.layers);
+    size_of::<super::gpu_data::Receiver>() as u64 * receivers
 }
 
 /// Rows of a picture that are made at once.

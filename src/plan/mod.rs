@@ -309,7 +309,8 @@ fn slots(
         ),
     ];
     if draws {
-        let bytes = slot::draw_target_bytes(facts.quality.level_map_texels);
+        let largest = level_maps(facts).iter().map(|key| key.texels).max();
+        let bytes = slot::draw_target_bytes(largest.unwrap_or(0));
         besides.push((
             "level_map_targets",
             bytes,

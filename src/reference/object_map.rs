@@ -56,7 +56,7 @@ pub(super) fn object_map(
         &place.facts.objects[object],
         &resolved.meshes[object],
         sun.flat,
-        side,
+        1,
     );
     let counter = Counter::new(&place, sun, &level_box, object);
     let cosines = counter.cosines(side);

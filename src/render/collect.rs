@@ -7,7 +7,8 @@ use glam::DVec3;
 use super::RenderError;
 use crate::accuracy::estimate::{FrameComparison, estimate_error};
 use crate::frame::Layer;
-use crate::passes::slot::{self, ENERGY_TERMS, Slot};
+use crate::passes::maps::MapLayout;
+use crate::passes::slot::{ENERGY_TERMS, Slot};
 use crate::passes::{estimate, light, term};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
@@ -259,11 +260,7 @@ pub(super) struct MapPlace {
 /// Where the requested map lies.
 pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
     if let Some(Receiver::Object(index)) = facts.map_receiver {
-        let texels = facts.quality.level_map_texels;
-        let nth_wet = facts
-            .wet_objects()
-            .position(|o| o == index as usize)
-            .unwrap_or(0) as u64;
+        let texels = facts.objects[index as usize].map_texels;
         let found = facts
             .suns
             .first()
@@ -272,8 +269,7 @@ pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
         return MapPlace {
             width: texels,
             height: texels,
-            first_texel: u64::from(slot::floor_texels(facts))
-                + nth_wet * u64::from(slot::object_texels(facts)),
+            first_texel: u64::from(MapLayout::of(facts).irradiance_of(0, index as usize, 0)),
             level_map: found.map(|b| b.key.clone()),
             axis_in_mesh: found.map_or(DVec3::Y, |b| b.axis),
         };

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::gpu::GpuContext;
-use crate::mesh::Mesh;
+use crate::mesh::{HierarchyNode, Mesh, hierarchy};
 use crate::passes::gpu_data::{Instance, vec4};
 use crate::scene::facts::SceneFacts;
+use crate::scene::placement::ObjectFacts;
 
 /// Where a mesh lies in the buffer, in 16-byte units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,12 +36,7 @@ impl Geometry {
         let mut places = BTreeMap::new();
         for (id, mesh) in distinct {
             let first_node = words.len() as u32;
-            for node in &mesh.hierarchy {
-                let corner =
-                    |c: [f32; 3], link| [c[0].to_bits(), c[1].to_bits(), c[2].to_bits(), link];
-                words.push(corner(node.min_m, node.entry));
-                words.push(corner(node.max_m, node.exit));
-            }
+            words.extend(mesh.hierarchy.iter().flat_map(node_words));
             let first_triangle = words.len() as u32;
             for triangle in &mesh.triangles {
                 for (p, n) in triangle.positions_m.iter().zip(triangle.normals) {
@@ -91,23 +87,28 @@ impl Geometry {
 
     /// The scene's objects as instances.
     pub(super) fn instances(&self, facts: &SceneFacts) -> Vec<Instance> {
+        let hierarchy = hierarchy_over(&facts.objects);
         facts
             .objects
             .iter()
-            .map(|object| {
+            .enumerate()
+            .map(|(index, object)| {
                 let inverse = object.local_from_mesh.inverse();
                 let place = self.place(&object.mesh);
                 let row = |i: usize| vec4(inverse.matrix3.row(i), inverse.translation[i]);
-                // Boxes grow by a rounding error of f32, so that a flat mesh is not missed.
-                let grow =
-                    glam::DVec3::splat(1e-6 * object.min.abs().max(object.max.abs()).max_element());
+                let mut nodes = [[0; 4]; 4];
+                for (words, node) in nodes
+                    .chunks_exact_mut(2)
+                    .zip(hierarchy.iter().skip(2 * index))
+                {
+                    words.copy_from_slice(&node_words(node));
+                }
                 Instance {
                     mesh_x: row(0),
                     mesh_y: row(1),
                     mesh_z: row(2),
                     albedo: object.albedo.map_or([0.0; 4], |a| vec4(a, 1.0)),
-                    min_m: vec4(object.min - grow, 0.0),
-                    max_m: vec4(object.max + grow, 0.0),
+                    nodes,
                     first_node: place.first_node,
                     node_count: place.nodes,
                     first_triangle: place.first_triangle,
@@ -116,6 +117,29 @@ impl Geometry {
             })
             .collect()
     }
+}
+
+/// A hierarchy over the objects' bounds.
+fn hierarchy_over(objects: &[ObjectFacts]) -> Vec<HierarchyNode> {
+    let boxes: Vec<[Vec3; 2]> = objects
+        .iter()
+        .map(|object| {
+            // They grow by a rounding error of f32, so that a flat mesh is not missed.
+            let grow =
+                glam::DVec3::splat(1e-6 * object.min.abs().max(object.max.abs()).max_element());
+            [(object.min - grow).as_vec3(), (object.max + grow).as_vec3()]
+        })
+        .collect();
+    hierarchy::build_over_boxes(&boxes)
+}
+
+/// A node as the shaders read it.
+fn node_words(node: &HierarchyNode) -> [[u32; 4]; 2] {
+    let corner = |c: [f32; 3], link| [c[0].to_bits(), c[1].to_bits(), c[2].to_bits(), link];
+    [
+        corner(node.min_m, node.entry),
+        corner(node.max_m, node.exit),
+    ]
 }
 
 /// Octahedral normal in two signed 16-bit halves; the shaders' `unpack_normal` undoes it.

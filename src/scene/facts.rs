@@ -302,7 +302,7 @@ impl SceneFacts {
             let Some(flat) = refraction::refract_direction(-to_light, DVec3::Y, self.ior) else {
                 continue;
             };
-            let texels = self.quality.level_map_texels;
+            let layers = self.quality.layers;
             let boxes: Vec<Option<LevelBox>> = self
                 .objects
                 .iter()
@@ -310,7 +310,7 @@ impl SceneFacts {
                 .map(|(object, mesh)| {
                     object
                         .wet
-                        .then(|| LevelBox::new(object, mesh, flat, texels))
+                        .then(|| LevelBox::new(object, mesh, flat, layers))
                 })
                 .collect();
             let window = window::light_window(self, to_light).ok_or_else(|| SceneError {

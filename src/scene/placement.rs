@@ -20,6 +20,8 @@ pub struct ObjectFacts {
     pub mesh: String,
     /// Whether light under water can strike it.
     pub wet: bool,
+    /// Texels along each side of its level maps and irradiance maps.
+    pub map_texels: u32,
 }
 
 impl ResolvedScene {
@@ -44,6 +46,7 @@ impl ResolvedScene {
                     albedo: object.albedo,
                     mesh: mesh.id.clone(),
                     wet: min.y < max_height_m,
+                    map_texels: self.scene.quality.level_map_texels,
                 }
             })
             .collect()
@@ -86,9 +89,11 @@ pub struct LevelMapKey {
 }
 
 impl LevelMapKey {
-    /// Bytes of the map in the arena: a pyramid of (front, back) pairs and one packed normal per texel.
+    /// Bytes of the map in the arena: a pyramid of (front, back) pairs and one packed normal per texel, then for each further layer
+    /// a depth and a packed normal per texel.
     pub fn bytes(&self) -> u64 {
-        let mut words = u64::from(self.texels) * u64::from(self.texels);
+        let texels = u64::from(self.texels) * u64::from(self.texels);
+        let mut words = texels * (1 + 2 * u64::from(self.layers - 1));
         let mut side = u64::from(self.texels);
         while side > 0 {
             words += 2 * side * side;
@@ -124,7 +129,8 @@ pub struct LevelBox {
 
 impl LevelBox {
     /// The box of `mesh`, placed as `object`, for light that goes along local unit direction `flat`.
-    pub fn new(object: &ObjectFacts, mesh: &Mesh, flat: DVec3, texels: u32) -> Self {
+    pub fn new(object: &ObjectFacts, mesh: &Mesh, flat: DVec3, layers: u32) -> Self {
+        let texels = object.map_texels;
         let mesh_from_local = object.local_from_mesh.inverse();
         let in_mesh = (mesh_from_local.matrix3 * flat).normalize();
         // Rounded, so that equal directions give equal keys and a rebuilt map is the same to the bit.
@@ -172,7 +178,7 @@ impl LevelBox {
                 mesh: object.mesh.clone(),
                 direction,
                 texels,
-                layers: 1,
+                layers,
             },
             map_from_mesh,
             s_range: [low.z - s_rim, high.z + s_rim],

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::parse::integer;
-use super::ranges::{LevelMapTexels, MapTexels, PixelSamples, SplitLevels, WaterCells};
+use super::ranges::{Layers, LevelMapTexels, MapTexels, PixelSamples, SplitLevels, WaterCells};
 
 /// The dials that trade accuracy for time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -26,6 +26,11 @@ pub struct Quality {
     #[serde(deserialize_with = "integer::<LevelMapTexels, _>")]
     #[schema(minimum = 16, maximum = 2048)]
     pub level_map_texels: u32,
+    /// Surfaces of a mesh along the light that have maps of their own, nearest first, 1 … 4. Default 1: what the light direction sees
+    /// through flat water. More show what only tilted rays reach, as the far sides of objects under steep waves.
+    #[serde(deserialize_with = "integer::<Layers, _>")]
+    #[schema(minimum = 1, maximum = 4)]
+    pub layers: u32,
     /// How often beams that straddle receivers are halved, 0 … 8. Default 2. Only the parts that still straddle are halved on, so
     /// each further level about doubles the time for shadow edges and halves their width.
     #[serde(deserialize_with = "integer::<SplitLevels, _>")]
@@ -59,6 +64,7 @@ impl Default for Quality {
             water_cells: 256,
             map_texels: 512,
             level_map_texels: 256,
+            layers: 1,
             split_levels: 2,
             target_error: None,
             time_budget_ms: None,

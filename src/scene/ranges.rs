@@ -127,6 +127,8 @@ integers! {
     WaterCells = 2..=2048;
     /// `quality.map_texels`.
     MapTexels = 16..=4096;
+    /// `quality.layers`.
+    Layers = 1..=4;
     /// `quality.split_levels`.
     SplitLevels = 0..=8;
     /// `quality.pixel_samples`.

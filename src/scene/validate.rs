@@ -200,6 +200,7 @@ fn quality(findings: &mut Findings, quality: &Quality) {
     findings.integer::<ranges::MapTexels>("/quality/map_texels", quality.map_texels);
     let level_map_texels = quality.level_map_texels;
     findings.integer::<ranges::LevelMapTexels>("/quality/level_map_texels", level_map_texels);
+    findings.integer::<ranges::Layers>("/quality/layers", quality.layers);
     findings.integer::<ranges::SplitLevels>("/quality/split_levels", quality.split_levels);
     findings.integer::<ranges::PixelSamples>("/quality/pixel_samples", quality.pixel_samples);
     if let Some(target) = quality.target_error {

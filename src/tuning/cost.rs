@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::passes::maps::MapLayout;
 use crate::passes::slot;
 use crate::plan::Plan;
 use crate::scene::facts::SceneFacts;
@@ -24,9 +25,12 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
     let cells = f64::from(facts.quality.water_cells).powi(2);
     let waves = facts.surface.components.len() as f64;
     let wet = facts.wet_objects().count() as f64;
-    let texels = f64::from(slot::flux_texels(facts));
+    let maps = MapLayout::of(facts);
+    let texels = maps.flux_texels() as f64;
     let sums = 0.6 + 0.4 * f64::from(facts.channels());
-    let level_texels = f64::from(slot::object_texels(facts));
+    let level_texels = (facts.objects.iter())
+        .map(|o| f64::from(o.map_texels).powi(2))
+        .fold(0.0, f64::max);
     let pixels = facts.camera.map_or(0.0, |camera| {
         f64::from(camera.width)
             * f64::from(

@@ -3,9 +3,8 @@
 use caustica::gpu::shader::Module;
 use caustica::passes::camera_irradiance::MAX_SUNS;
 use caustica::passes::desc::Run;
-use caustica::passes::{
-    self, Groups, PassDesc, Repeat, Work, landed, level_map, light, slot, term,
-};
+use caustica::passes::maps::MapLayout;
+use caustica::passes::{self, Groups, PassDesc, Repeat, Work, landed, level_map, slot, term};
 use caustica::scene::facts::SceneFacts;
 use serde_json::json;
 use wgpu::naga::{self, Expression, Literal, TypeInner};
@@ -103,8 +102,12 @@ fn receivers_have_the_size_that_slots_reckon_with() {
             .find(|(wgsl, _, _)| *wgsl == name)
             .map(|(_, size, _)| *size as u64)
     };
-    assert_eq!(size_of("Receiver"), Some(light::RECEIVER_BYTES));
     let facts = facts();
+    assert_eq!(
+        size_of("Receiver").map(|bytes| 2 * bytes),
+        Some(slot::Slot::Receivers.bytes(&facts)),
+        "the floor and one object"
+    );
     let waves = facts.surface.components.len() as u64;
     assert_eq!(
         Some(slot::Slot::Waves.bytes(&facts) / waves),
@@ -201,8 +204,8 @@ fn dispatches_cover_their_work() {
         check_cover(pass, &facts, sun, [64, 1], vertices);
     }
     check_cover(&passes::deposit::PASS, &facts, sun, [8, 8], [131, 131]);
-    let texels = slot::flux_texels(&facts);
-    assert_eq!(texels, slot::floor_texels(&facts) + 64 * 64);
+    let maps = MapLayout::of(&facts);
+    assert_eq!(maps.flux_texels(), floor_texels(&facts) + 64 * 64);
     let band = Run::Band {
         first_row: 0,
         rows: 67,
@@ -212,6 +215,11 @@ fn dispatches_cover_their_work() {
     for pass in passes::ALL.iter().filter(|p| p.repeat == Repeat::Band) {
         check_cover(pass, &facts, band, [8, 8], [101, 67]);
     }
+}
+
+fn floor_texels(facts: &SceneFacts) -> u64 {
+    let map = facts.floor_map.unwrap();
+    u64::from(map.width) * u64::from(map.height)
 }
 
 #[test]
@@ -226,14 +234,17 @@ fn sums_over_texels_cover_all_of_them() {
         _ => panic!("no dispatch"),
     };
     let landed = (landed::PASS.steps)(&facts, sun);
-    let needed = slot::flux_texels(&facts).div_ceil(landed::TEXELS_PER_GROUP);
-    assert_eq!(groups(landed[0].work), needed);
+    let maps = MapLayout::of(&facts);
+    let needed = maps
+        .flux_texels()
+        .div_ceil(u64::from(landed::TEXELS_PER_GROUP));
+    assert_eq!(u64::from(groups(landed[0].work)), needed);
     let side = size(&module("passes/irradiance.wgsl"), "irradiance_main")[0];
     let irradiance = (passes::irradiance::PASS.steps)(&facts, sun);
     assert_eq!(irradiance.len(), 2, "the floor and one object");
-    let texels = [slot::floor_texels(&facts), slot::object_texels(&facts)];
+    let texels = [floor_texels(&facts), maps.texels_of(0)];
     for (step, texels) in irradiance.iter().zip(texels) {
-        assert!(groups(step.work) * side >= texels);
+        assert!(u64::from(groups(step.work) * side) >= texels);
     }
 }
 
