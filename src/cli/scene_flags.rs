@@ -34,7 +34,6 @@ struct Flag {
 static FLAGS: LazyLock<Vec<Flag>> = LazyLock::new(|| fields().into_iter().map(flag).collect());
 
 fn flag(field: Field) -> Flag {
-    let long = field.flag();
     let words = match field.words.as_slice() {
         [] => String::new(),
         words => format!(" [possible values: {}]", words.join(", ")),
@@ -45,7 +44,7 @@ fn flag(field: Field) -> Flag {
         ""
     };
     Flag {
-        long,
+        long: field.flag,
         help: format!("{}{separator}{words}", field.help),
         heading: if field.pointer.starts_with("/quality") {
             "Replace fields of `quality`"

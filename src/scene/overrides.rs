@@ -16,6 +16,9 @@ use super::types::{IrradianceMapOutput, Output, ViewOutput};
 pub struct Field {
     /// Its name in the scene.
     pub name: String,
+    /// Its flag without the dashes in front: `water-cells`; with the section in front where `output` has the name too:
+    /// `quality-layers`.
+    pub flag: String,
     /// JSON pointer to it.
     pub pointer: String,
     /// What it means: the text of `openapi.yaml`.
@@ -24,13 +27,6 @@ pub struct Field {
     pub words: Vec<String>,
     /// Whether it holds several values, which are then separated by commas.
     pub is_list: bool,
-}
-
-impl Field {
-    /// Its flag without the dashes in front: `water-cells`.
-    pub fn flag(&self) -> String {
-        self.name.replace('_', "-")
-    }
 }
 
 /// Every field of `quality` and of all kinds of `output`, in the order of their names; a field that several kinds share is
@@ -46,6 +42,11 @@ pub fn fields() -> Vec<Field> {
         }
     }
     outputs.sort_by(|a, b| a.name.cmp(&b.name));
+    for field in &mut fields {
+        if outputs.iter().any(|output| output.name == field.name) {
+            field.flag = format!("quality-{}", field.flag);
+        }
+    }
     fields.extend(outputs);
     fields
 }
@@ -150,6 +151,7 @@ fn fields_of<T: PartialSchema + ToSchema>(section: &str) -> Vec<Field> {
         .iter()
         .map(|(name, property)| Field {
             name: name.clone(),
+            flag: name.replace('_', "-"),
             pointer: format!("{section}/{name}"),
             help: help(property),
             words: references(property)

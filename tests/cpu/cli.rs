@@ -30,14 +30,14 @@ fn every_field_has_a_flag_in_every_command_that_reads_a_scene() {
         let help = command.render_long_help().to_string();
         for field in fields() {
             assert!(
-                help.contains(&format!("--{} <VALUE", field.flag())),
+                help.contains(&format!("--{} <VALUE", field.flag)),
                 "{name} --{}",
-                field.flag()
+                field.flag
             );
             assert!(
                 help.contains(&field.help[..20.min(field.help.len())]),
                 "{name} --{}",
-                field.flag()
+                field.flag
             );
         }
     }

@@ -49,11 +49,18 @@ fn fields_carry_their_documentation() {
         assert!(field.help.len() > 10, "{field:?}");
     }
     let cells = field("water_cells");
-    assert_eq!(cells.flag(), "water-cells");
+    assert_eq!(cells.flag, "water-cells");
     assert!(cells.help.contains("2 … 2048"), "{}", cells.help);
     assert_eq!(field("format").words, ["png", "exr"]);
     assert_eq!(field("tone_curve").words, ["clip", "pbr_neutral"]);
-    assert!(field("layers").words.contains(&"depth".to_owned()));
+    let layers: Vec<_> = fields()
+        .into_iter()
+        .filter(|f| f.name == "layers")
+        .collect();
+    assert_eq!(layers[0].pointer, "/quality/layers");
+    assert_eq!(layers[0].flag, "quality-layers");
+    assert_eq!(layers[1].flag, "layers");
+    assert!(layers[1].words.contains(&"depth".to_owned()));
     assert_eq!(field("kind").words, ["view", "irradiance_map"]);
     let lists: Vec<String> = fields()
         .into_iter()
