@@ -27,6 +27,23 @@ fn whole_volume(name: &str) -> f64 {
     parts.iter().map(|(triangles, _)| volume(triangles)).sum()
 }
 
+/// Whether every edge is there twice, once each way.
+fn edges_cancel(mesh: &Mesh) -> bool {
+    let mut edges: Vec<_> = mesh
+        .triangles
+        .iter()
+        .map(|t| t.positions_m.map(|p| p.to_array().map(f32::to_bits)))
+        .flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)])
+        .map(|(from, to)| (from.min(to), from.max(to), from < to))
+        .collect();
+    edges.sort_unstable();
+    let once_each_way = |pair: &[([u32; 3], [u32; 3], bool)]| match pair {
+        [one, other] => (one.0, one.1) == (other.0, other.1) && one.2 != other.2,
+        _ => false,
+    };
+    edges.chunks(2).all(once_each_way)
+}
+
 /// Name and first digits of the id: of the text, to the last digit.
 const IDS: &[(&str, &str)] = &[
     ("bipyramid", "083afa7b7757"),
@@ -219,6 +236,7 @@ fn closed_shapes_are_closed_and_face_outward() {
         assert_eq!(open, shape.open_edges, "{}", shape.name);
         if open == 0 {
             closed += 1;
+            assert!(edges_cancel(mesh), "{}", shape.name);
             for (triangles, _) in &parts {
                 let volume = volume(triangles);
                 assert!(volume > 1e-7, "{}: {volume}", shape.name);
