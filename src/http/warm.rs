@@ -26,7 +26,7 @@ pub struct WarmParameters {
     /// `ELEVATION,AZIMUTH` of a sun, degrees, as in a scene: above 0 … 90, −10⁶ … 10⁶. Once for each sun. The level map is built that
     /// an unrotated, uniformly scaled instance of the mesh needs under it.
     #[param(style = Form, explode, example = json!(["60,30"]))]
-    warm: Vec<String>,
+    warm: Option<Vec<String>>,
     /// `quality.level_map_texels` of the frames to come, a power of two, 16 … 2048. Default 256.
     #[param(minimum = 16, maximum = 2048)]
     warm_texels: Option<u32>,

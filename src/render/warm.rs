@@ -23,6 +23,8 @@ impl Renderer {
         wanted: &WarmUp,
         cancel: &CancellationToken,
     ) -> Result<Vec<WarmedMap>, RenderError> {
+        // Where all is there nothing is submitted, and only a poll tells of a lost device.
+        self.gpu.tidy();
         self.gpu.check()?;
         let resolved = wanted.scene_of(mesh)?;
         let mut facts = SceneFacts::of(&resolved)?;

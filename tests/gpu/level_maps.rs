@@ -45,7 +45,7 @@ fn pool(objects: Value, texels: u32) -> Value {
         "objects": objects,
         "camera": { "position_m": [0, 2.5, 3], "target_m": [0, -1, 0] },
         "quality": { "water_cells": 32, "map_texels": 64, "level_map_texels": texels, "split_levels": 1 },
-        "output": { "kind": "view", "width": 48, "height": 27, "layers": ["radiance", "irradiance"] }
+        "output": { "kind": "view", "width": 48, "height": 27, "format": "exr", "layers": ["radiance", "irradiance"] }
     })
 }
 

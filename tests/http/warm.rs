@@ -45,8 +45,10 @@ async fn who_does_not_ask_gets_the_mesh_alone() {
     let service = Service::start().await;
     let reply = upload(&service, "").await;
     assert_eq!(reply.status, 201);
-    let info: MeshInfo = reply.json();
-    assert_eq!(reply.json::<Value>(), serde_json::to_value(&info).unwrap());
+    let fields =
+        |value: &Value| -> Vec<String> { value.as_object().unwrap().keys().cloned().collect() };
+    let info = serde_json::to_value(reply.json::<MeshInfo>()).unwrap();
+    assert_eq!(fields(&reply.json()), fields(&info));
     assert_eq!(service.control.count("warm"), 0);
 }
 
