@@ -7,9 +7,7 @@ use utoipa::IntoParams;
 use super::error::ApiError;
 use super::state::AppState;
 use crate::level_map::{WarmSun, WarmUp};
-use crate::scene::ranges::{
-    ELEVATION, IOR, Integer, LevelMapLayers, LevelMapTexels, TURNING_ANGLE,
-};
+use crate::scene::ranges::{ELEVATION, IOR, Integer, Layers, LevelMapTexels, TURNING_ANGLE};
 use crate::scene::{Issue, Quality, Water};
 
 /// The names of [`WarmParameters`].
@@ -30,8 +28,8 @@ pub struct WarmParameters {
     /// `quality.level_map_texels` of the frames to come, a power of two, 16 … 2048. Default 256.
     #[param(minimum = 16, maximum = 2048)]
     warm_texels: Option<u32>,
-    /// Layers of the level maps. Default 1.
-    #[param(minimum = 1, maximum = 1)]
+    /// `quality.layers` of the frames to come, 1 … 4. Default 1.
+    #[param(minimum = 1, maximum = 4)]
     warm_layers: Option<u32>,
     /// `water.ior` of the frames to come, 1 … 4. Default 1.333.
     #[param(minimum = 1, maximum = 4)]
@@ -67,8 +65,8 @@ impl Reader {
         for (name, text) in pairs {
             match name.as_str() {
                 "warm" => {
-                    let sun = sun(text);
-                    self.note(name, text, sun).map(|sun| self.suns.push(sun));
+                    let sun = self.note(name, text, sun(text));
+                    self.suns.extend(sun);
                 }
                 "warm_texels" => {
                     let texels = integer::<LevelMapTexels>(text);
@@ -76,7 +74,7 @@ impl Reader {
                     self.texels = self.once(name, self.texels, texels);
                 }
                 "warm_layers" => {
-                    let layers = integer::<LevelMapLayers>(text);
+                    let layers = integer::<Layers>(text);
                     let layers = self.note(name, text, layers);
                     self.layers = self.once(name, self.layers, layers);
                 }
@@ -107,7 +105,7 @@ impl Reader {
         Ok(WarmQuery((!self.suns.is_empty()).then(|| WarmUp {
             suns: self.suns,
             texels: self.texels.unwrap_or(Quality::default().level_map_texels),
-            layers: self.layers.unwrap_or(1),
+            layers: self.layers.unwrap_or(Quality::default().layers),
             ior: self.ior.unwrap_or(Water::default().ior),
         })))
     }

@@ -25,7 +25,7 @@ pub struct WarmUp {
     pub suns: Vec<WarmSun>,
     /// `quality.level_map_texels` of the frames to come.
     pub texels: u32,
-    /// Layers of the maps, nearest first.
+    /// `quality.layers` of those frames.
     pub layers: u32,
     /// Index of refraction of their water.
     pub ior: f64,
@@ -76,7 +76,7 @@ impl WarmUp {
                 "mesh": mesh.id,
                 "translation_m": [-middle.x, -middle.y - depth_m, -middle.z],
             }],
-            "quality": { "level_map_texels": self.texels },
+            "quality": { "level_map_texels": self.texels, "layers": self.layers },
             "output": { "kind": "irradiance_map", "receiver": 0 },
         }))?;
         Ok(ResolvedScene {

@@ -88,7 +88,7 @@ async fn one_sun_is_warmed_with_the_defaults_of_a_scene() {
 async fn several_suns_and_all_parameters() {
     let service = Service::start().await;
     let query =
-        "?warm=90%2C0&warm_texels=64&warm=12.5,-170&warm_ior=1.5&warm_layers=1&warm=1e-9,1e6";
+        "?warm=90%2C0&warm_texels=64&warm=12.5,-170&warm_ior=1.5&warm_layers=3&warm=1e-9,1e6";
     let reply = upload(&service, query).await;
     assert_eq!(reply.status, 201, "{}", reply.text());
     let warmed = reply.json::<Uploaded>().warmed.unwrap();
@@ -98,7 +98,7 @@ async fn several_suns_and_all_parameters() {
         .collect();
     assert_eq!(suns, [(90.0, 0.0), (12.5, -170.0), (1e-9, 1e6)]);
     let (_, wanted) = &service.control.warmed()[0];
-    assert_eq!((wanted.texels, wanted.layers, wanted.ior), (64, 1, 1.5));
+    assert_eq!((wanted.texels, wanted.layers, wanted.ior), (64, 3, 1.5));
 }
 
 #[tokio::test]
@@ -125,8 +125,8 @@ async fn bad_parameters_are_refused_before_anything_is_stored() {
             "warm_texels",
             "power of two",
         ),
-        ("?warm=60,30&warm_layers=0", "warm_layers", "1"),
-        ("?warm=60,30&warm_layers=9", "warm_layers", "1"),
+        ("?warm=60,30&warm_layers=0", "warm_layers", "1 … 4"),
+        ("?warm=60,30&warm_layers=5", "warm_layers", "1 … 4"),
         ("?warm=60,30&warm_ior=0.9", "warm_ior", "1 … 4"),
         ("?warm=60,30&warm_ior=water", "warm_ior", "1 … 4"),
         ("?warm=60,30&warm_ior=1.3&warm_ior=1.4", "warm_ior", "once"),
