@@ -12,7 +12,7 @@ use utoipa::ToSchema;
 
 use crate::passes::{self, PassDesc, Repeat, Slot, slot};
 use crate::scene::LayerName;
-use crate::scene::facts::SceneFacts;
+use crate::scene::facts::{SceneFacts, Wanted};
 use crate::scene::placement::LevelMapKey;
 use crate::stats::{AbsentPass, ChosenDials, Warning};
 
@@ -116,8 +116,10 @@ impl Cached for WarmCache {
 pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
     let estimate =
         (facts.quality.estimate_error && !facts.suns.is_empty()).then_some(Slot::Differences);
-    if facts.only_estimate {
-        return estimate.into_iter().collect();
+    match facts.wanted {
+        Wanted::LevelMaps => return BTreeSet::from([Slot::LevelMaps]),
+        Wanted::Estimate => return estimate.into_iter().collect(),
+        Wanted::Frame => {}
     }
     if facts.camera.is_none() {
         return BTreeSet::from([Slot::Irradiance])
@@ -296,10 +298,14 @@ fn slots(
         .collect();
     let wanted: u64 = level_maps(facts).iter().map(|key| key.bytes()).sum();
     let draws = kept.iter().any(|(pass, _)| pass.repeat == Repeat::LevelMap);
+    let readback_bytes = match facts.wanted {
+        Wanted::LevelMaps => 0,
+        Wanted::Frame | Wanted::Estimate => slot::readback_bytes(facts),
+    };
     let mut besides = vec![
         (
             "readback",
-            slot::readback_bytes(facts),
+            readback_bytes,
             "the largest result on its way to the host",
         ),
         (

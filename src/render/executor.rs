@@ -13,7 +13,7 @@ use crate::passes::desc::{PassDesc, Repeat, Run};
 use crate::passes::slot::{self, ENERGY_TERMS, Lifetime, Slot, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
-use crate::scene::facts::SceneFacts;
+use crate::scene::facts::{SceneFacts, Wanted};
 use crate::scene::placement::LevelMapKey;
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::{AccuracyStats, TimeStats};
@@ -81,7 +81,8 @@ impl Renderer {
                 .collect::<Vec<_>>()
         };
         if !of(Repeat::LevelMap).is_empty() {
-            self.build_level_maps(facts, &of(Repeat::LevelMap), missing, buffers, &mut time_ms)?;
+            let passes = of(Repeat::LevelMap);
+            self.build_level_maps(facts, &passes, missing, buffers, cancel, &mut time_ms)?;
         }
         let mut accounts = Vec::new();
         for sun in 0..if of(Repeat::Sun).is_empty() {
@@ -114,8 +115,9 @@ impl Renderer {
             warnings,
             time_ms,
             peak_bytes: 0,
+            level_maps_built: u32::try_from(missing.len()).unwrap_or(u32::MAX),
         };
-        if facts.only_estimate {
+        if facts.wanted != Wanted::Frame {
             return Ok(result);
         }
         if let Some(camera) = facts.camera {
@@ -351,9 +353,11 @@ impl Renderer {
         passes: &[&'static PassDesc],
         missing: &[LevelMapKey],
         buffers: &FrameBuffers,
+        cancel: &CancellationToken,
         time_ms: &mut TimeStats,
     ) -> Result<(), RenderError> {
         for key in missing {
+            check_cancelled(cancel)?;
             let started = Recording::start(time_ms);
             let found = facts
                 .suns
@@ -379,6 +383,7 @@ impl Renderer {
                 self.submit_if_timed(pass, &mut encoder, time_ms)?;
             }
             self.submit(encoder, started, time_ms)?;
+            self.level_maps.built(key);
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ mod executor;
 mod geometry;
 mod self_check;
 mod tune;
+mod warm;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -18,8 +19,8 @@ use crate::frame::Frame;
 use crate::gpu::shader::ShaderSources;
 use crate::gpu::timing::Timing;
 use crate::gpu::{BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
-use crate::level_map::LevelMapCache;
-use crate::passes::{Slot, shaders};
+use crate::level_map::{ArenaError, LevelMapCache};
+use crate::passes::{self, Repeat, Slot, shaders};
 use crate::plan::{self, Cached, Plan};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
@@ -115,8 +116,14 @@ impl Renderer {
         if let Some(folder) = &config.shader_dump {
             dump_shaders(&sources, folder)?;
         }
-        let arena_bytes =
-            (config.level_map_budget_mib << 20).min(gpu.limits.max_storage_buffer_binding_size);
+        let arena_bytes = config.level_map_budget_bytes().min(bindable_bytes(&gpu));
+        if arena_bytes < config.level_map_budget_bytes() {
+            tracing::warn!(
+                wanted_bytes = config.level_map_budget_bytes(),
+                arena_bytes,
+                "the device binds no more level maps at once"
+            );
+        }
         Ok(Self {
             timing: Timing::new(&gpu),
             gpu,
@@ -127,7 +134,7 @@ impl Renderer {
             level_maps: LevelMapCache::new(arena_bytes),
             arena: None,
             geometry: None,
-            memory_budget_bytes: config.memory_budget_mib << 20,
+            memory_budget_bytes: config.memory_budget_bytes(),
             calibration: config.calibration.clone().unwrap_or_default(),
             idle_polls: 0,
             wide_sum_reruns: 0,
@@ -196,7 +203,11 @@ impl Renderer {
                 .map(|p| PassStats {
                     name: p.name.clone(),
                     reason: p.reason.clone(),
-                    runs: p.runs,
+                    runs: if builds_level_maps(&p.name) {
+                        run.level_maps_built
+                    } else {
+                        p.runs
+                    },
                     gpu_ms: gpu_times
                         .iter()
                         .find(|(name, _)| *name == p.name)
@@ -248,20 +259,34 @@ impl Renderer {
         let missing = self
             .level_maps
             .reserve(&plan::level_maps(facts))
-            .map_err(|e| RenderError::OverBudget {
-                what: "the scene's level maps (CAUSTICA_LEVEL_MAP_BUDGET_MIB)".to_owned(),
-                needed_bytes: e.needed_bytes,
-                budget_bytes: e.budget_bytes,
-            })?;
+            .map_err(|error| self.level_maps_over_budget(error))?;
         self.pool
             .begin_frame(self.memory_budget_bytes.saturating_sub(plan.peak_bytes));
         self.idle_polls = 0;
         self.timing.begin_frame();
         let result = self.execute(resolved, facts, plan, &missing, cancel);
-        if result.is_err() {
-            self.level_maps.forget(&missing);
+        // Maps that are whole stay, also those of a frame that was cancelled after them.
+        self.level_maps.forget_unbuilt();
+        if let Err(RenderError::Gpu(_)) = &result {
+            // Which buffers the device failed on is not known, so nothing that would outlive the frame is trusted.
+            self.level_maps.clear();
+            self.arena = None;
+            self.geometry = None;
         }
         result
+    }
+
+    fn level_maps_over_budget(&self, error: ArenaError) -> RenderError {
+        let limit = if error.budget_bytes < bindable_bytes(&self.gpu) {
+            "CAUSTICA_LEVEL_MAP_BUDGET_MIB"
+        } else {
+            "the device's limit for one binding"
+        };
+        RenderError::OverBudget {
+            what: format!("holding the scene's level maps at once ({limit})"),
+            needed_bytes: error.needed_bytes,
+            budget_bytes: error.budget_bytes,
+        }
     }
 
     /// Frees what is cached for a mesh.
@@ -308,11 +333,7 @@ impl Renderer {
                 budget_bytes: self.memory_budget_bytes,
             });
         }
-        let limit = self
-            .gpu
-            .limits
-            .max_storage_buffer_binding_size
-            .min(self.gpu.limits.max_buffer_size);
+        let limit = bindable_bytes(&self.gpu);
         for slot in &plan.slots {
             if slot.bytes > limit {
                 return Err(RenderError::OverBudget {
@@ -354,6 +375,23 @@ struct RunResult {
     warnings: Vec<Warning>,
     time_ms: TimeStats,
     peak_bytes: u64,
+    /// More than planned where maps that were cached had to make way and come back.
+    level_maps_built: u32,
+}
+
+/// Whether a pass runs once per level map that is built.
+fn builds_level_maps(pass: &str) -> bool {
+    let found = passes::ALL.into_iter().find(|desc| desc.name == pass);
+    found.is_some_and(|desc| desc.repeat == Repeat::LevelMap)
+}
+
+/// The largest buffer that shaders can bind whole, a multiple of 16 bytes.
+fn bindable_bytes(gpu: &GpuContext) -> u64 {
+    let limits = &gpu.limits;
+    let bytes = limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size);
+    bytes - bytes % 16
 }
 
 fn ms_since(start: Instant) -> f64 {

@@ -74,6 +74,17 @@ pub struct CameraFacts {
     pub height: u32,
 }
 
+/// How much of a frame is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// All that the output asks for.
+    Frame,
+    /// Nothing but the light's own estimate of its error.
+    Estimate,
+    /// Nothing but the level maps, for frames to come.
+    LevelMaps,
+}
+
 /// What a scene boils down to.
 #[derive(Clone, Debug)]
 pub struct SceneFacts {
@@ -111,8 +122,8 @@ pub struct SceneFacts {
     pub layers: Vec<LayerName>,
     /// The receiver of an irradiance map.
     pub map_receiver: Option<Receiver>,
-    /// Whether nothing but the light's own estimate of its error is wanted.
-    pub only_estimate: bool,
+    /// How much of the frame is wanted.
+    pub wanted: Wanted,
     /// Sky irradiance to be added to an irradiance map on the floor, W/m².
     pub map_sky_w_m2: [f64; 3],
     /// The dials.
@@ -164,7 +175,7 @@ impl SceneFacts {
             camera: None,
             layers: vec![LayerName::Irradiance],
             map_receiver: None,
-            only_estimate: false,
+            wanted: Wanted::Frame,
             map_sky_w_m2: [0.0; 3],
             quality: scene.quality.clone(),
             warnings: Vec::new(),

@@ -21,6 +21,8 @@ mod folder;
 mod footprint;
 mod formulas;
 mod harness;
+mod level_maps;
+mod level_maps_service;
 mod memory;
 mod planted;
 #[path = "../support/scene_files.rs"]
