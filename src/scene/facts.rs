@@ -111,6 +111,8 @@ pub struct SceneFacts {
     pub layers: Vec<LayerName>,
     /// The receiver of an irradiance map.
     pub map_receiver: Option<Receiver>,
+    /// Its layer, 0 the nearest along the light; of a view and on the floor 0.
+    pub map_layer: u32,
     /// Whether nothing but the light's own estimate of its error is wanted.
     pub only_estimate: bool,
     /// Sky irradiance to be added to an irradiance map on the floor, W/m².
@@ -164,6 +166,7 @@ impl SceneFacts {
             camera: None,
             layers: vec![LayerName::Irradiance],
             map_receiver: None,
+            map_layer: 0,
             only_estimate: false,
             map_sky_w_m2: [0.0; 3],
             quality: scene.quality.clone(),
@@ -171,6 +174,7 @@ impl SceneFacts {
             surface,
         };
         facts.want_output(&scene.output, scene.camera.as_ref());
+        facts.size_maps();
         facts.find_suns(resolved)?;
         facts.collect_warnings(&water.scattering_per_m);
         Ok(facts)
@@ -247,6 +251,7 @@ impl SceneFacts {
             }
             Output::IrradianceMap(map) => {
                 self.map_receiver = Some(map.receiver);
+                self.map_layer = map.layer;
                 let Some(floor) = &self.floor else { return };
                 if matches!(map.receiver, Receiver::Object(_)) {
                     return;
