@@ -530,7 +530,6 @@ pub struct IrradianceMapOutput {
     /// Which surface of the mesh along the light's direction under flat water, nearest first: 0 … `quality.layers` − 1. Mesh only;
     /// default 0.
     #[serde(default, deserialize_with = "integer::<Layer, _>")]
-    #[schema(minimum = 0, maximum = 3)]
     pub layer: u32,
     /// Whether skies count too. Default false.
     #[serde(default)]

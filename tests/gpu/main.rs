@@ -21,6 +21,10 @@ mod folder;
 mod footprint;
 mod formulas;
 mod harness;
+mod instances;
+#[path = "../support/instances.rs"]
+mod instances_scene;
+mod layers;
 mod memory;
 mod planted;
 #[path = "../support/scene_files.rs"]
