@@ -73,13 +73,31 @@ pub enum Groups {
 pub enum Work {
     /// A compute dispatch.
     Compute(Groups),
-    /// Draws the front (nearest) or back (farthest) of a level map.
+    /// Draws a surface of a level map.
     DrawLevelMap {
-        /// The farthest instead of the nearest.
-        back: bool,
+        /// Which one.
+        surface: Surface,
         /// Vertices.
         vertices: u32,
     },
+    /// A compute dispatch that sees a further layer of the level map that was drawn.
+    StoreLayer {
+        /// Which one, 1 … layers − 1.
+        layer: u32,
+        /// Workgroups.
+        groups: [u32; 3],
+    },
+}
+
+/// What is drawn of a mesh from the light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// The nearest.
+    Front,
+    /// The farthest.
+    Back,
+    /// The nearest behind layer `layer` − 1.
+    Layer(u32),
 }
 
 /// One dispatch or draw.

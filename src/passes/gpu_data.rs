@@ -115,9 +115,9 @@ gpu_struct! {
         first_output: u32,
         adds: u32,
         density_per_flux: f32,
+        receiver_count: u32,
         pad_0: u32,
         pad_1: u32,
-        pad_2: u32,
     }
 }
 

@@ -126,7 +126,12 @@ pub fn receivers(
     let layers = facts.quality.layers;
     for (object, level_box) in facts.suns[index].boxes.iter().enumerate() {
         let Some(level_box) = level_box else {
-            all.extend((0..layers).map(|_| Receiver::default()));
+            // Without texels, but in its place: `density_at` in the shaders looks receivers up by where their maps begin.
+            all.extend((0..layers).map(|layer| Receiver {
+                map_offset: maps.flux_of(object, layer),
+                layer,
+                ..Receiver::default()
+            }));
             continue;
         };
         let row = |r: glam::DVec4| [r.x as f32, r.y as f32, r.z as f32, r.w as f32];

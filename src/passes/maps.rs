@@ -53,6 +53,11 @@ impl MapLayout {
         self.floor + self.per_sun
     }
 
+    /// Texels of all objects' maps of one sun.
+    pub fn object_texels(&self) -> u64 {
+        self.per_sun
+    }
+
     /// Texels of all irradiance maps.
     pub fn irradiance_texels(&self) -> u64 {
         self.floor + self.per_sun * self.suns

@@ -2,6 +2,7 @@
 
 use super::maps::MapLayout;
 use crate::scene::facts::SceneFacts;
+use crate::scene::placement::LevelMapKey;
 
 /// Words at the head of a queue: the workgroups of the dispatch that empties it, and the count.
 pub const QUEUE_HEAD_WORDS: u64 = 4;
@@ -22,6 +23,8 @@ pub const ENERGY_TERMS: u64 = 16;
 pub const SUNDRY_BYTES: u64 = 256 + 32 + 12;
 /// Bytes per texel of the five textures that a level map is drawn into.
 pub const DRAW_TARGET_BYTES: u64 = 5 * 4;
+/// Bytes per texel of the two textures that each further layer is drawn into.
+pub const LAYER_TARGET_BYTES: u64 = 2 * 4;
 /// Most bytes of one layer of a band of the picture.
 pub const BAND_BYTES: u64 = 32 << 20;
 
@@ -159,7 +162,7 @@ impl Slot {
             ),
             Self::LevelMaps => (
                 "level_maps",
-                "front and back depth pyramids, packed normals",
+                "front and back depth pyramids, packed normals, further layers",
                 Lifetime::Cached,
             ),
             Self::Surface => (
@@ -296,8 +299,9 @@ impl Slot {
 }
 
 /// Bytes of the textures that a level map is drawn into.
-pub fn draw_target_bytes(texels: u32) -> u64 {
-    DRAW_TARGET_BYTES * u64::from(texels) * u64::from(texels)
+pub fn draw_target_bytes(key: &LevelMapKey) -> u64 {
+    let per_texel = DRAW_TARGET_BYTES + LAYER_TARGET_BYTES * u64::from(key.layers - 1);
+    per_texel * u64::from(key.texels) * u64::from(key.texels)
 }
 
 /// Bytes of the largest result that is copied to the host at once.

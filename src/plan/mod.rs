@@ -143,13 +143,14 @@ pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
 
 /// The distinct level maps that a scene needs, in the order of suns and objects.
 pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
-    let mut keys: Vec<&LevelMapKey> = Vec::new();
-    for level_box in facts.suns.iter().flat_map(|sun| sun.boxes.iter().flatten()) {
-        if !keys.contains(&&level_box.key) {
-            keys.push(&level_box.key);
-        }
-    }
-    keys
+    let mut seen = BTreeSet::new();
+    facts
+        .suns
+        .iter()
+        .flat_map(|sun| sun.boxes.iter().flatten())
+        .map(|level_box| &level_box.key)
+        .filter(|key| seen.insert(*key))
+        .collect()
 }
 
 /// Plans `facts` from `passes` (usually [`passes::ALL`]).
@@ -246,6 +247,12 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     } else if facts.camera.is_none() && facts.map_sky_w_m2.iter().all(|&e| e == 0.0) {
         add("sky", "output.include_sky is false");
     }
+    if facts.quality.level_of_detail > 0.0 && facts.camera.is_none() {
+        add(
+            "level_of_detail",
+            "the output is an irradiance map, seen by no camera: every object gets quality.level_map_texels",
+        );
+    }
     absent
 }
 
@@ -315,11 +322,13 @@ fn slots(
         ),
     ];
     if draws {
-        let largest = level_maps(facts).iter().map(|key| key.texels).max();
-        let bytes = slot::draw_target_bytes(largest.unwrap_or(0));
+        let largest = level_maps(facts)
+            .into_iter()
+            .map(slot::draw_target_bytes)
+            .max();
         besides.push((
             "level_map_targets",
-            bytes,
+            largest.unwrap_or(0),
             "textures that a level map is drawn into",
         ));
     }

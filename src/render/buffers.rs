@@ -10,6 +10,7 @@ use crate::passes::slot::{Lifetime, SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
 use crate::plan::Plan;
 use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
+use crate::scene::placement::LevelMapKey;
 
 /// The buffers of one frame, by slot name.
 pub(super) struct FrameBuffers {
@@ -33,6 +34,8 @@ pub(super) struct DrawTargets {
     pub(super) normal: wgpu::TextureView,
     pub(super) scratch_normal: wgpu::TextureView,
     pub(super) depth: wgpu::TextureView,
+    /// Depth and normal of each further layer.
+    pub(super) layers: Vec<[wgpu::TextureView; 2]>,
 }
 
 impl Renderer {
@@ -166,15 +169,15 @@ impl Renderer {
             .clone()
     }
 
-    pub(super) fn draw_targets(&self, texels: u32) -> DrawTargets {
+    pub(super) fn draw_targets(&self, key: &LevelMapKey) -> DrawTargets {
         let texture = |label, format| {
             self.gpu
                 .device
                 .create_texture(&wgpu::TextureDescriptor {
                     label: Some(label),
                     size: wgpu::Extent3d {
-                        width: texels,
-                        height: texels,
+                        width: key.texels,
+                        height: key.texels,
                         depth_or_array_layers: 1,
                     },
                     mip_level_count: 1,
@@ -193,6 +196,14 @@ impl Renderer {
             normal: texture("front normal", wgpu::TextureFormat::R32Uint),
             scratch_normal: texture("back normal", wgpu::TextureFormat::R32Uint),
             depth: texture("depth", wgpu::TextureFormat::Depth32Float),
+            layers: (1..key.layers)
+                .map(|_| {
+                    [
+                        texture("layer's depth", wgpu::TextureFormat::R32Float),
+                        texture("layer's normal", wgpu::TextureFormat::R32Uint),
+                    ]
+                })
+                .collect(),
         }
     }
 

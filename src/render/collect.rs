@@ -269,7 +269,11 @@ pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
         return MapPlace {
             width: texels,
             height: texels,
-            first_texel: u64::from(MapLayout::of(facts).irradiance_of(0, index as usize, 0)),
+            first_texel: u64::from(MapLayout::of(facts).irradiance_of(
+                0,
+                index as usize,
+                facts.map_layer,
+            )),
             level_map: found.map(|b| b.key.clone()),
             axis_in_mesh: found.map_or(DVec3::Y, |b| b.axis),
         };

@@ -6,7 +6,7 @@ use super::buffers::{DrawTargets, FrameBuffers};
 use super::{Renderer, ms_since, slot_name};
 use crate::gpu::kernel::RasterTargets;
 use crate::gpu::{Binding, GpuError, Kernel, RasterKernel};
-use crate::passes::desc::{Groups, PassDesc, Run, Step, Work};
+use crate::passes::desc::{Groups, PassDesc, Run, Step, Surface, Work};
 use crate::passes::level_map::EMPTY_DEPTH;
 use crate::scene::facts::SceneFacts;
 use crate::stats::TimeStats;
@@ -95,11 +95,21 @@ impl Renderer {
                     &step,
                     (groups, wide_sums),
                     buffers,
-                    targets,
+                    targets.map(|targets| (targets, 0)),
                 )?,
-                Work::DrawLevelMap { back, vertices } => {
+                Work::StoreLayer { layer, groups } => self.dispatch(
+                    encoder,
+                    pass,
+                    facts,
+                    &step,
+                    (Groups::Direct(groups), wide_sums),
+                    buffers,
+                    targets.map(|targets| (targets, layer)),
+                )?,
+                Work::DrawLevelMap { surface, vertices } => {
                     if let Some(targets) = targets {
-                        self.draw(encoder, pass, &step, (back, vertices), buffers, targets)?;
+                        let drawn = (surface, vertices);
+                        self.draw(encoder, pass, &step, drawn, buffers, targets)?;
                     }
                 }
             }
@@ -119,7 +129,7 @@ impl Renderer {
         step: &Step,
         (groups, wide_sums): (Groups, bool),
         buffers: &FrameBuffers,
-        targets: Option<&DrawTargets>,
+        targets: Option<(&DrawTargets, u32)>,
     ) -> Result<(), GpuError> {
         let key = (pass.name, step.entry, facts.attenuates(), wide_sums);
         if !self.kernels.contains_key(&key) {
@@ -135,9 +145,11 @@ impl Renderer {
         let kernel = &self.kernels[&key];
         let uniforms = self.uniform_buffers(step);
         let group = kernel.bind(&self.gpu, |name| match name {
-            "front_depth" => targets.map(|t| Binding::Texture(&t.front)),
-            "back_depth" => targets.map(|t| Binding::Texture(&t.back)),
-            "front_normal" => targets.map(|t| Binding::Texture(&t.normal)),
+            "front_depth" => targets.map(|(t, _)| Binding::Texture(&t.front)),
+            "back_depth" => targets.map(|(t, _)| Binding::Texture(&t.back)),
+            "front_normal" => targets.map(|(t, _)| Binding::Texture(&t.normal)),
+            "layer_depth" => targets.and_then(|(t, layer)| further(t, layer, 0)),
+            "layer_normal" => targets.and_then(|(t, layer)| further(t, layer, 1)),
             _ => Some(Binding::Buffer(
                 uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
             )),
@@ -176,16 +188,21 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         pass: &'static PassDesc,
         step: &Step,
-        (back, vertices): (bool, u32),
+        (surface, vertices): (Surface, u32),
         buffers: &FrameBuffers,
         targets: &DrawTargets,
     ) -> Result<(), GpuError> {
-        if !self.raster_kernels.contains_key(&back) {
+        let back = surface == Surface::Back;
+        let key = match surface {
+            Surface::Front | Surface::Back => ("level_map_fragment", back),
+            Surface::Layer(_) => ("level_map_behind", false),
+        };
+        if !self.raster_kernels.contains_key(&key) {
             let kernel = RasterKernel::new(
                 &self.gpu,
                 &self.sources,
                 &format!("passes/{}.wgsl", pass.name),
-                (step.entry, "level_map_fragment"),
+                (step.entry, key.0),
                 &RasterTargets {
                     colors: &[wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint],
                     depth: wgpu::TextureFormat::Depth32Float,
@@ -196,19 +213,24 @@ impl Renderer {
                     },
                 },
             )?;
-            self.raster_kernels.insert(back, kernel);
+            self.raster_kernels.insert(key, kernel);
         }
-        let kernel = &self.raster_kernels[&back];
+        let kernel = &self.raster_kernels[&key];
         let uniforms = self.uniform_buffers(step);
-        let group = kernel.bind(&self.gpu, |name| {
-            Some(Binding::Buffer(
+        let group = kernel.bind(&self.gpu, |name| match (name, surface) {
+            ("previous_depth", Surface::Layer(1)) => Some(Binding::Texture(&targets.front)),
+            ("previous_depth", Surface::Layer(layer)) => further(targets, layer - 1, 0),
+            _ => Some(Binding::Buffer(
                 uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
-            ))
+            )),
         })?;
-        let (color, normal) = if back {
-            (&targets.back, &targets.scratch_normal)
-        } else {
-            (&targets.front, &targets.normal)
+        let (color, normal) = match surface {
+            Surface::Front => (&targets.front, &targets.normal),
+            Surface::Back => (&targets.back, &targets.scratch_normal),
+            Surface::Layer(layer) => {
+                let [depth, normal] = &targets.layers[layer as usize - 1];
+                (depth, normal)
+            }
         };
         let clear = |value: f64| wgpu::Operations {
             load: wgpu::LoadOp::Clear(wgpu::Color {
@@ -254,4 +276,10 @@ impl Renderer {
         draw.draw(0..vertices, 0..1);
         Ok(())
     }
+}
+
+/// Depth (0) or normal (1) of a further layer.
+fn further(targets: &DrawTargets, layer: u32, which: usize) -> Option<Binding<'_>> {
+    let layer = targets.layers.get((layer as usize).checked_sub(1)?)?;
+    Some(Binding::Texture(&layer[which]))
 }

@@ -14,7 +14,7 @@ use crate::passes::slot::{self, ENERGY_TERMS, Lifetime, Slot, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
 use crate::scene::facts::{SceneFacts, Wanted};
-use crate::scene::placement::LevelMapKey;
+use crate::scene::placement::{LevelBox, LevelMapKey};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::{AccuracyStats, TimeStats};
 
@@ -32,10 +32,7 @@ impl Renderer {
     ) -> Result<RunResult, RenderError> {
         let buffers = self.prepare(resolved, facts, plan)?;
         let result = self.run_passes(facts, plan, missing, &buffers, cancel);
-        let targets = missing
-            .iter()
-            .map(|key| slot::draw_target_bytes(key.texels))
-            .max();
+        let targets = missing.iter().map(slot::draw_target_bytes).max();
         let peak_bytes = self.pool.peak_bytes()
             + targets.unwrap_or(0)
             + self.gpu.take_readback_peak()
@@ -319,7 +316,7 @@ impl Renderer {
         if let (Some(key), true) = (&map.level_map, !facts.suns.is_empty()) {
             let arena = self.arena.as_ref().zip(self.level_maps.offset(key));
             if let Some((arena, offset)) = arena {
-                cosines = Some(self.read_normals(arena, offset, key)?);
+                cosines = Some(self.read_normals(arena, offset, key, facts.map_layer)?);
             }
         }
         let layer = collect::finish_map(facts, &map, values, cosines.as_deref())?;
@@ -327,14 +324,16 @@ impl Renderer {
         Ok(())
     }
 
-    /// Packed normals of a level map.
+    /// Packed normals of a layer of a level map.
     fn read_normals(
         &self,
         arena: &wgpu::Buffer,
         offset: u64,
         key: &LevelMapKey,
+        layer: u32,
     ) -> Result<Vec<u32>, GpuError> {
         let bytes = 4 * u64::from(key.texels) * u64::from(key.texels);
+        let first = offset + key.pyramid_bytes() + 4 * u64::from(key.normals_after(layer));
         let staging = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("normals"),
             size: bytes,
@@ -342,7 +341,7 @@ impl Renderer {
             mapped_at_creation: false,
         });
         let mut encoder = self.encoder("normals");
-        encoder.copy_buffer_to_buffer(arena, offset + key.bytes() - bytes, &staging, 0, bytes);
+        encoder.copy_buffer_to_buffer(arena, first, &staging, 0, bytes);
         self.gpu.queue.submit([encoder.finish()]);
         readback::read(&self.gpu, &staging, bytes)
     }
@@ -356,17 +355,20 @@ impl Renderer {
         cancel: &CancellationToken,
         time_ms: &mut TimeStats,
     ) -> Result<(), RenderError> {
+        let boxes: BTreeMap<&LevelMapKey, &LevelBox> = facts
+            .suns
+            .iter()
+            .flat_map(|sun| sun.boxes.iter().flatten())
+            .map(|level_box| (&level_box.key, level_box))
+            .collect();
         for key in missing {
             check_cancelled(cancel)?;
             let started = Recording::start(time_ms);
-            let found = facts
-                .suns
-                .iter()
-                .flat_map(|sun| sun.boxes.iter().flatten())
-                .find(|b| &b.key == key);
-            let (Some(level_box), Some(offset), Some(geometry)) =
-                (found, self.level_maps.offset(key), self.geometry.as_ref())
-            else {
+            let (Some(level_box), Some(offset), Some(geometry)) = (
+                boxes.get(key),
+                self.level_maps.offset(key),
+                self.geometry.as_ref(),
+            ) else {
                 continue;
             };
             let place = geometry.place(&key.mesh);
@@ -376,7 +378,7 @@ impl Renderer {
                 first_triangle: place.first_triangle,
                 triangles: place.triangles,
             };
-            let targets = self.draw_targets(key.texels);
+            let targets = self.draw_targets(key);
             let mut encoder = self.encoder("level map");
             for pass in passes {
                 self.record(&mut encoder, pass, facts, run, buffers, Some(&targets))?;

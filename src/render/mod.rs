@@ -79,6 +79,9 @@ const IDLE_POLLS: u32 = 5;
 /// Pass, entry point, whether it attenuates, whether its flux sums are wide.
 type KernelKey = (&'static str, &'static str, bool, bool);
 
+/// Fragment entry point, and whether the farthest fragment stays instead of the nearest.
+type RasterKey = (&'static str, bool);
+
 /// Owns the GPU context and the caches; lives on the GPU thread.
 #[derive(Debug)]
 pub struct Renderer {
@@ -87,7 +90,7 @@ pub struct Renderer {
     pool: BufferPool,
     timing: Timing,
     kernels: BTreeMap<KernelKey, Kernel>,
-    raster_kernels: BTreeMap<bool, RasterKernel>,
+    raster_kernels: BTreeMap<RasterKey, RasterKernel>,
     level_maps: LevelMapCache,
     arena: Option<wgpu::Buffer>,
     geometry: Option<geometry::Geometry>,
@@ -338,8 +341,9 @@ impl Renderer {
             if slot.bytes > limit {
                 return Err(RenderError::OverBudget {
                     what: format!(
-                        "buffer `{}` (the device's limit for one binding)",
-                        slot.name
+                        "buffer `{}` (the device's limit for one binding{})",
+                        slot.name,
+                        what_helps(plan, &slot.name)
                     ),
                     needed_bytes: slot.bytes,
                     budget_bytes: limit,
@@ -347,6 +351,17 @@ impl Renderer {
             }
         }
         Ok(())
+    }
+}
+
+/// What would make a buffer smaller, where it holds maps of many objects.
+fn what_helps(plan: &Plan, slot: &str) -> &'static str {
+    let holds_maps = ["flux", "irradiance", "coarse_irradiance"].contains(&slot);
+    let has_objects = plan.passes.iter().any(|pass| pass.name == "split");
+    if holds_maps && has_objects {
+        "; quality.level_of_detail gives small and far objects smaller maps, fewer quality.level_map_texels or quality.layers all of them"
+    } else {
+        ""
     }
 }
 

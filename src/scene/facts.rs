@@ -122,6 +122,8 @@ pub struct SceneFacts {
     pub layers: Vec<LayerName>,
     /// The receiver of an irradiance map.
     pub map_receiver: Option<Receiver>,
+    /// Its layer, 0 the nearest along the light; of a view and on the floor 0.
+    pub map_layer: u32,
     /// How much of the frame is wanted.
     pub wanted: Wanted,
     /// Sky irradiance to be added to an irradiance map on the floor, W/m².
@@ -175,6 +177,7 @@ impl SceneFacts {
             camera: None,
             layers: vec![LayerName::Irradiance],
             map_receiver: None,
+            map_layer: 0,
             wanted: Wanted::Frame,
             map_sky_w_m2: [0.0; 3],
             quality: scene.quality.clone(),
@@ -182,6 +185,7 @@ impl SceneFacts {
             surface,
         };
         facts.want_output(&scene.output, scene.camera.as_ref());
+        facts.size_maps();
         facts.find_suns(resolved)?;
         facts.collect_warnings(&water.scattering_per_m);
         Ok(facts)
@@ -258,6 +262,7 @@ impl SceneFacts {
             }
             Output::IrradianceMap(map) => {
                 self.map_receiver = Some(map.receiver);
+                self.map_layer = map.layer;
                 let Some(floor) = &self.floor else { return };
                 if matches!(map.receiver, Receiver::Object(_)) {
                     return;

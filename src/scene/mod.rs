@@ -5,6 +5,7 @@
 //! To add a field: put it into `types` with unit, range and default in its doc comment, its range into `ranges`, check it in
 //! `validate`, and run the tests, which tell where `openapi.yaml` has to follow.
 
+mod detail;
 pub mod error;
 pub mod facts;
 mod findings;

@@ -31,6 +31,11 @@ pub struct Quality {
     #[serde(deserialize_with = "integer::<Layers, _>")]
     #[schema(minimum = 1, maximum = 4)]
     pub layers: u32,
+    /// Texels of an object's maps per pixel of its size on the picture, 0 … 16: its level map and irradiance map then have the power
+    /// of two of texels at or above that, 16 … `level_map_texels`; what is outside the picture gets 16 and still casts its shadow.
+    /// Default 0: every object gets `level_map_texels`. Views only.
+    #[schema(minimum = 0, maximum = 16)]
+    pub level_of_detail: f64,
     /// How often beams that straddle receivers are halved, 0 … 8. Default 2. Only the parts that still straddle are halved on, so
     /// each further level about doubles the time for shadow edges and halves their width.
     #[serde(deserialize_with = "integer::<SplitLevels, _>")]
@@ -65,6 +70,7 @@ impl Default for Quality {
             map_texels: 512,
             level_map_texels: 256,
             layers: 1,
+            level_of_detail: 0.0,
             split_levels: 2,
             target_error: None,
             time_budget_ms: None,

@@ -201,6 +201,8 @@ fn quality(findings: &mut Findings, quality: &Quality) {
     let level_map_texels = quality.level_map_texels;
     findings.integer::<ranges::LevelMapTexels>("/quality/level_map_texels", level_map_texels);
     findings.integer::<ranges::Layers>("/quality/layers", quality.layers);
+    let detail = &ranges::LEVEL_OF_DETAIL;
+    findings.number("/quality/level_of_detail", quality.level_of_detail, detail);
     findings.integer::<ranges::SplitLevels>("/quality/split_levels", quality.split_levels);
     findings.integer::<ranges::PixelSamples>("/quality/pixel_samples", quality.pixel_samples);
     if let Some(target) = quality.target_error {

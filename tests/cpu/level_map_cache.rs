@@ -39,6 +39,19 @@ fn a_map_takes_a_pyramid_and_normals() {
 }
 
 #[test]
+fn a_further_layer_takes_a_depth_and_a_normal_per_texel() {
+    let layered = LevelMapKey {
+        layers: 3,
+        ..key("a", 16)
+    };
+    assert_eq!(layered.bytes(), SMALL + 2 * 8 * 256);
+    assert_eq!(layered.pyramid_bytes(), 4 * 2 * 341);
+    // The last layer's normals end the map.
+    let last = layered.pyramid_bytes() + 4 * u64::from(layered.normals_after(2));
+    assert_eq!(last + 4 * 256, layered.bytes());
+}
+
+#[test]
 fn what_is_there_is_a_hit() {
     let mut cache = LevelMapCache::new(4 * SMALL);
     let a = key("a", 16);

@@ -278,6 +278,108 @@ fn equal_meshes_under_one_sun_share_a_level_map() {
 }
 
 #[test]
+fn layers_multiply_the_maps_of_objects() {
+    let plan = |layers: u32| pool_with(&[("quality", json!({ "layers": layers }))]);
+    let (one, three) = (plan(1), plan(3));
+    let bytes = |plan: &Plan, name: &str| plan.slots.iter().find(|s| s.name == name).unwrap().bytes;
+    let map = 256 * 256;
+    let more = |name: &str| bytes(&three, name) - bytes(&one, name);
+    assert_eq!(more("flux"), 2 * 8 * 3 * map);
+    assert_eq!(more("irradiance"), 2 * 12 * map);
+    assert_eq!(more("level_map_targets"), 2 * 8 * map);
+    let level_map = three.passes.iter().find(|p| p.name == "level_map").unwrap();
+    assert!(
+        level_map.reason.contains("in 3 layers"),
+        "{}",
+        level_map.reason
+    );
+    let irradiance = three
+        .passes
+        .iter()
+        .find(|p| p.name == "irradiance")
+        .unwrap();
+    assert!(
+        irradiance.reason.contains("3 layers each"),
+        "{}",
+        irradiance.reason
+    );
+}
+
+/// Boxes in a row away from the camera, one beside its picture, and one behind it.
+fn row_of_boxes(detail: f64) -> Value {
+    let mut scene = pool();
+    let boxes = [
+        [0.0, 0.0],
+        [0.0, -6.0],
+        [0.0, -30.0],
+        [60.0, -30.0],
+        [0.0, 20.0],
+    ];
+    scene["objects"] = boxes
+        .iter()
+        .map(|[x, z]| json!({ "mesh": "box.obj", "translation_m": [x, -1, z] }))
+        .collect();
+    scene["quality"] = json!({ "level_of_detail": detail });
+    scene["output"] = json!({ "kind": "view", "width": 480, "height": 320 });
+    scene["camera"] = json!({ "position_m": [0, 2, 4], "target_m": [0, -1, -2] });
+    scene
+}
+
+#[test]
+fn maps_go_by_the_size_on_the_picture() {
+    let sizes = |detail: f64| -> Vec<u32> {
+        let facts = SceneFacts::of(&scene_files::scene(row_of_boxes(detail))).unwrap();
+        let sizes: Vec<u32> = facts.objects.iter().map(|o| o.map_texels).collect();
+        for (object, &texels) in sizes.iter().enumerate() {
+            assert_eq!(facts.detail_of(object), f64::from(texels) / 256.0);
+        }
+        sizes
+    };
+    assert_eq!(sizes(0.0), [256; 5], "it is off unless asked for");
+    let one = sizes(1.0);
+    println!("{one:?}");
+    assert!(
+        one[0] >= 128 && one[0] > one[1] && one[1] > one[2],
+        "{one:?}"
+    );
+    assert_eq!(
+        one[3..],
+        [16, 16],
+        "beside the picture and behind the camera"
+    );
+    let two = sizes(2.0);
+    for (one, two) in one[..3].iter().zip(&two) {
+        assert_eq!((2 * one).min(256), *two, "{two:?}");
+    }
+    let plan = planned(&scene_files::scene(row_of_boxes(1.0)));
+    for name in ["level_map", "irradiance"] {
+        let reason = &plan.passes.iter().find(|p| p.name == name).unwrap().reason;
+        assert!(
+            reason.contains("with smaller maps by quality.level_of_detail"),
+            "{reason}"
+        );
+    }
+}
+
+#[test]
+fn objects_maps_are_finished_in_one_dispatch() {
+    let steps = |count: usize| {
+        let mut scene = pool();
+        let place = |i: usize| json!([i as f64 * 0.1, -1, 0]);
+        scene["objects"] = (0..count)
+            .map(|i| json!({ "mesh": "box.obj", "translation_m": place(i), "scale": 0.1 }))
+            .collect();
+        let facts = SceneFacts::of(&scene_files::scene(scene)).unwrap();
+        let run = passes::desc::Run::Sun {
+            index: 0,
+            wide_sums: false,
+        };
+        (passes::irradiance::PASS.steps)(&facts, run).len()
+    };
+    assert_eq!((steps(0), steps(1), steps(20)), (1, 2, 2));
+}
+
+#[test]
 fn the_peak_is_the_sum_of_the_slots() {
     for name in scene_files::names() {
         let plan = planned(&scene_files::load(&name, &[]));

@@ -266,7 +266,28 @@ fn schema_ranges_are_the_ones_that_are_enforced() {
             }
         }
     }
-    assert_eq!(count, 14, "all such fields say their range in the schema");
+    assert_eq!(count, 15, "all such fields say their range in the schema");
+}
+
+#[test]
+fn a_layer_is_one_that_the_mesh_has() {
+    let mut scene = map_scene(json!({ "receiver": 0, "layer": 1 }));
+    let issue = only(&scene, "/output/layer");
+    assert!(
+        issue.accepted.contains("below `quality.layers`"),
+        "{issue:?}"
+    );
+    scene["quality"]["layers"] = json!(2);
+    assert_eq!(findings(&scene), []);
+    scene["output"]["layer"] = json!(2);
+    let issue = only(&scene, "/output/layer");
+    assert!(issue.accepted.ends_with("0 … 1"), "{issue:?}");
+    scene["output"]["receiver"] = json!("floor");
+    let issue = only(&scene, "/output/layer");
+    assert!(
+        issue.accepted.contains("the floor has one surface"),
+        "{issue:?}"
+    );
 }
 
 #[test]

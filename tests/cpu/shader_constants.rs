@@ -252,7 +252,8 @@ fn sums_over_texels_cover_all_of_them() {
 fn every_entry_point_is_run_by_a_step() {
     let facts = facts();
     let coarse = facts.coarse();
-    let level_box = facts.suns[0].boxes[0].clone().unwrap();
+    let mut level_box = facts.suns[0].boxes[0].clone().unwrap();
+    level_box.key.layers = 2;
     for pass in passes::ALL {
         let run = match pass.repeat {
             Repeat::LevelMap => Run::LevelMap {

@@ -24,7 +24,14 @@ const UNIFORMS: [&str; 8] = [
     "view",
 ];
 /// Textures that the executor draws into.
-const TEXTURES: [&str; 3] = ["front_depth", "back_depth", "front_normal"];
+const TEXTURES: [&str; 6] = [
+    "front_depth",
+    "back_depth",
+    "front_normal",
+    "previous_depth",
+    "layer_depth",
+    "layer_normal",
+];
 
 /// The module of a file below `shaders/`.
 pub(crate) fn module(path: &str) -> Module {

@@ -21,6 +21,10 @@ mod folder;
 mod footprint;
 mod formulas;
 mod harness;
+mod instances;
+#[path = "../support/instances.rs"]
+mod instances_scene;
+mod layers;
 mod level_maps;
 mod level_maps_service;
 mod memory;
