@@ -69,7 +69,7 @@ pub(super) fn resolve_steps(entry: &'static str, facts: &SceneFacts, run: Run<'_
             continue;
         }
         let resolve = Resolve {
-            light_w_m2: vec4(facts.suns[index].irradiance_w_m2, 0.0),
+            power: vec4(facts.suns[index].power, 0.0),
             first_texel: receiver.map_offset,
             texel_count: texels,
             first_output: receiver.irradiance_offset,
