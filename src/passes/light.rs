@@ -214,9 +214,7 @@ fn lamp_on_floor(sun: &SunFacts, rect: &Rect, y_m: f64, ior: f64, texels: f64) -
     let distance_m = height_m.hypot(aside_m);
     let mean = whole.abs() / texels;
     TexelFlux {
-        brightest: (area_m2 * height_m / distance_m.powi(3))
-            .min(TAU)
-            .max(mean),
+        brightest: (area_m2 * height_m / distance_m.powi(3)).min(TAU).max(mean),
         mean,
     }
 }

@@ -165,10 +165,8 @@ impl<'a, const K: usize> Counter<'a, K> {
         }];
         targets.extend(occluders.bounds.iter().copied());
         let suns = suns(scene)?.into_iter().map(|sun| {
-            let to_light = direction_to_light(
-                sun.elevation_deg.to_radians(),
-                sun.azimuth_deg.to_radians(),
-            );
+            let to_light =
+                direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians());
             CountedLight {
                 source: CountedSource::Sun(to_light),
                 power: sun.irradiance_w_m2,
@@ -280,15 +278,8 @@ impl<'a, const K: usize> Counter<'a, K> {
                         window: sun.window,
                     }
                     .trace(&lattice, counted, cancelled),
-                    CountedSource::Lamp(position_m) => {
-                        Lamp::new(&self.surface, position_m, ior).trace(
-                            &ground,
-                            &sun.window,
-                            &lattice,
-                            counted,
-                            cancelled,
-                        )
-                    }
+                    CountedSource::Lamp(position_m) => Lamp::new(&self.surface, position_m, ior)
+                        .trace(&ground, &sun.window, &lattice, counted, cancelled),
                 };
                 self.add_irradiance(&tally, sun, irradiance);
                 match &mut both {

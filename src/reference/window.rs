@@ -108,7 +108,11 @@ pub(super) fn lamp_window(
     let mut farthest: f64 = 0.0;
     for i in 0..=INCIDENCES {
         let incidence = std::f64::consts::FRAC_PI_2 * f64::from(i) / f64::from(INCIDENCES) * 0.9999;
-        let azimuths = if surface.max_slope() > 0.0 { AZIMUTHS } else { 1 };
+        let azimuths = if surface.max_slope() > 0.0 {
+            AZIMUTHS
+        } else {
+            1
+        };
         for j in 0..azimuths {
             let azimuth = std::f64::consts::TAU * f64::from(j) / f64::from(azimuths);
             let to_light = direction_to_light(std::f64::consts::FRAC_PI_2 - incidence, azimuth);

@@ -5,8 +5,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::placement::{LevelBox, ObjectFacts};
 use super::lamp_window;
+use super::placement::{LevelBox, ObjectFacts};
 use super::ranges::DEFAULT_MAP_SIDE;
 use super::source::{self, AirLight, Grid, Source};
 use super::window::{self, Rect, Region};
@@ -426,7 +426,8 @@ impl SceneFacts {
         }
         self.warn_of_coarse_cells();
         for sun in &self.suns {
-            let finest_m = sun.grid.places.size().min_element() / f64::from(self.quality.water_cells);
+            let finest_m =
+                sun.grid.places.size().min_element() / f64::from(self.quality.water_cells);
             if let Source::Point { position_m } = sun.source
                 && position_m.y < CLOSE_CELLS * finest_m
             {

@@ -150,12 +150,7 @@ pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
     let height = facts.surface.max_height_m();
     let mut window: Option<Rect> = None;
     for lit in receivers(facts) {
-        let rect = entry(
-            lit.rect(),
-            &drift,
-            -lit.max.y - height,
-            -lit.min.y + height,
-        );
+        let rect = entry(lit.rect(), &drift, -lit.max.y - height, -lit.min.y + height);
         window = Some(window.map_or(rect, |w| w.including(rect)));
     }
     // A margin against rounding at the rim, so that no texel at the edge misses a sliver.

@@ -21,6 +21,7 @@ mod folder;
 mod footprint;
 mod formulas;
 mod harness;
+mod lamps;
 mod memory;
 mod planted;
 #[path = "../support/scene_files.rs"]
