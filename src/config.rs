@@ -125,7 +125,7 @@ pub struct Limits {
     )]
     pub max_objects: usize,
     /// Most lights in a scene.
-    #[arg(long, env = "CAUSTICA_MAX_LIGHTS", default_value_t = 16, global = true)]
+    #[arg(long, env = "CAUSTICA_MAX_LIGHTS", default_value_t = 64, global = true)]
     pub max_lights: usize,
     /// Most wave components in a scene.
     #[arg(long, env = "CAUSTICA_MAX_WAVES", default_value_t = 256, global = true)]
@@ -147,7 +147,7 @@ impl Default for Limits {
             max_pixels: 33_554_432,
             max_triangles: 1_000_000,
             max_objects: 256,
-            max_lights: 16,
+            max_lights: 64,
             max_waves: 256,
             mesh_store_bytes: 1_073_741_824,
         }

@@ -113,8 +113,8 @@ pub(crate) const ALL: &[Plant] = &[
     },
     Plant {
         file: "shaders/passes/split.wgsl",
-        from: "note_term(TERM_REFLECTED, b.flux_m2 - b.transmitted_m2)",
-        to: "note_term(TERM_REFLECTED, b.flux_m2 + b.transmitted_m2)",
+        from: "note_term(TERM_REFLECTED, b.unit_flux - b.transmitted)",
+        to: "note_term(TERM_REFLECTED, b.unit_flux + b.transmitted)",
         binary: "gpu",
         tests: &["splitting::every_number_of_halvings_loses_nothing_and_tears_less"],
         what: "light that enters the water is also counted as reflected",

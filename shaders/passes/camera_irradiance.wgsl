@@ -1,5 +1,5 @@
 // Camera irradiance — how much light falls on what each pixel sees? One invocation per pixel: the receiver's maps under water,
-// the suns themselves above it, and the sky on both.
+// the lights themselves above it, and the sky on both.
 #import "lib/sky.wgsl"
 #import "shared/view.wgsl"
 #import "shared/normals.wgsl"
@@ -7,9 +7,9 @@
 #import "shared/receivers.wgsl"
 #import "shared/level_maps.wgsl"
 
-struct SunLight {
-    to_light: vec4f,
-    irradiance_w_m2: vec4f,
+struct AirLight {
+    source: vec4f, // of a sun the unit direction to it, w 0; of a point light its place, local m, w 1
+    power: vec4f,  // irradiance of a plane facing the sun, W/m²; intensity of the point light, W/sr
 }
 
 // Least |cosine| between surface and map axis that is reckoned with: below it a surface shows the axis nothing.
@@ -21,7 +21,7 @@ const LEAST_COSINE: f32 = 1e-6;
 @group(0) @binding(16) var<storage, read> visible_position: array<vec4f>;
 @group(0) @binding(17) var<storage, read> visible_normal: array<vec4f>;
 @group(0) @binding(20) var<storage, read_write> visible_irradiance: array<vec4f>; // W/m², w: 1 where the floor's map has no texel
-@group(0) @binding(21) var<uniform> suns: array<SunLight, 16>;
+@group(0) @binding(21) var<uniform> suns: array<AirLight, 64>;
 
 fn texel_value(offset: u32, width: u32, texel: vec2u) -> vec3f {
     let at = 3u * (offset + texel.y * width + texel.x);
@@ -77,14 +77,25 @@ fn object_irradiance(first: u32, p: vec3f, normal: vec3f) -> vec3f {
     return sum * (cosine / weights);
 }
 
-fn sun_in_air(p: vec3f, normal: vec3f) -> vec3f {
+// Suns and point lights over the water on a dry place.
+fn lights_in_air(p: vec3f, normal: vec3f) -> vec3f {
+    let from_m = p + normal * 1e-3;
     var sum = vec3f(0.0);
     for (var i = 0u; i < view.air_sun_count; i++) {
-        let l = suns[i].to_light.xyz;
-        let cosine = dot(normal, l);
+        var to_light = suns[i].source.xyz;
+        var reach_m = VERY_FAR_M;
+        var per_power = 1.0;
+        if suns[i].source.w == 1.0 {
+            let way = suns[i].source.xyz - from_m;
+            let length2 = max(dot(way, way), 1e-12);
+            reach_m = sqrt(length2);
+            to_light = way / reach_m;
+            per_power = 1.0 / length2;
+        }
+        let cosine = dot(normal, to_light);
         if cosine <= 0.0 { continue; }
-        let blocker = trace_objects(view.instance_count, p + normal * 1e-3, l, 0.0, VERY_FAR_M);
-        if blocker.receiver < 0 { sum += suns[i].irradiance_w_m2.xyz * cosine; }
+        let blocker = trace_objects(view.instance_count, from_m, to_light, 0.0, reach_m);
+        if blocker.receiver < 0 { sum += suns[i].power.xyz * (cosine * per_power); }
     }
     return sum;
 }
@@ -102,7 +113,7 @@ fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
         let p = seen.xyz;
         let normal = visible_normal[index].xyz;
         if dry {
-            sum += sun_in_air(p, normal);
+            sum += lights_in_air(p, normal);
             for (var c = 0; c < 3; c++) { sum[c] += sky_irradiance(view.sky_radiance[c], 1.0, 0.0, 0.0, 1.0, normal.y, 1.0); }
         } else {
             let per_sun = 1u + view.instance_count * view.layers;

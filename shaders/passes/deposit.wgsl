@@ -2,12 +2,14 @@
 // straddle receivers go to the split queue, footprints of very many texels or of no area to the wide queue.
 #import "lib/attenuation.wgsl"
 #import "lib/coverage.wgsl"
+#import "lib/solid_angle.wgsl"
 #import "shared/light.wgsl"
 #import "shared/receivers.wgsl"
 #import "shared/floor_distance.wgsl"
 #import "shared/flux.wgsl"
 #import "shared/footprint.wgsl"
 #import "shared/beam_triangle.wgsl"
+#import "shared/unit_flux.wgsl"
 #import "shared/grid.wgsl"
 #import "shared/grid_beam.wgsl"
 #import "shared/account.wgsl"
@@ -36,19 +38,19 @@ struct CellSums {
 
 fn deposit_beam(cell: vec2u, half: u32) -> CellSums {
     let b = grid_beam(cell, half);
-    var sums = CellSums(b.flux_m2, b.flux_m2 - b.transmitted_m2, Losses(0.0, vec3f(0.0), vec3f(0.0)));
+    var sums = CellSums(b.unit_flux, b.unit_flux - b.transmitted, Losses(0.0, vec3f(0.0), vec3f(0.0)));
     let beam_index = 2u * (cell.y * light.cells + cell.x) + half;
-    if b.transmitted_m2 == 0.0 { return sums; }
+    if b.transmitted == 0.0 { return sums; }
     if !is_whole(b) {
         // Its parts are accounted for where they are followed: their surface is not quite the beam's.
         push_split(beam_index);
         return CellSums(0.0, 0.0, sums.losses);
     }
-    if b.receiver.x == NO_RECEIVER {
-        sums.losses.missed = b.transmitted_m2;
+    if ends_nowhere(b) {
+        sums.losses.missed = b.transmitted;
         return sums;
     }
-    sums.losses.extinguished = b.transmitted_m2 * mean_extinction(b.t);
+    sums.losses.extinguished = b.transmitted * mean_extinction(b.t);
     let target_map = target_of(receivers[b.receiver.x]);
     let box = texel_box(target_map, b.uv[0], b.uv[1], b.uv[2]);
     let extent = vec2u(box.last - box.first + 1);
@@ -56,7 +58,7 @@ fn deposit_beam(cell: vec2u, half: u32) -> CellSums {
         push_wide(beam_index);
         return sums;
     }
-    let arriving = b.transmitted_m2 * mean_transmission(b.t);
+    let arriving = b.transmitted * mean_transmission(b.t);
     sums.losses.left = arriving * deposit_area(target_map, b.uv[0], b.uv[1], b.uv[2], arriving);
     return sums;
 }
@@ -125,7 +127,7 @@ fn deposit_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         let beam_index = atomicLoad(&wide_queue[QUEUE_HEAD + item]);
         let cell_index = beam_index >> 1u;
         let b = grid_beam(vec2u(cell_index % light.cells, cell_index / light.cells), beam_index & 1u);
-        let arriving = b.transmitted_m2 * mean_transmission(b.t);
+        let arriving = b.transmitted * mean_transmission(b.t);
         let target_map = target_of(receivers[b.receiver.x]);
         var beside = 0.0;
         if is_segment(b.uv[0], b.uv[1], b.uv[2]) {

@@ -18,8 +18,7 @@ fn hits_main(@builtin(global_invocation_id) id: vec3u) {
     let side = light.cells + 1u;
     if id.x >= side || id.y >= side { return; }
     let vertex = id.y * side + id.x;
-    let xz = vertex_m(vec2f(id.xy));
-    let origin = vec3f(xz.x, surface[vertex].x, xz.y);
+    let origin = origin_at(vec2f(id.xy), surface[vertex].x);
     let hit = trace_light(origin, beams[vertex].xyz, light.object_count, light.has_floor == 1u);
     hits[vertex] = vec4f(hit.uv, hit.t, f32(hit.receiver));
 }

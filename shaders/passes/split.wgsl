@@ -6,7 +6,10 @@
 #import "lib/fresnel.wgsl"
 #import "lib/attenuation.wgsl"
 #import "lib/coverage.wgsl"
+#import "lib/octahedral.wgsl"
+#import "lib/solid_angle.wgsl"
 #import "shared/light.wgsl"
+#import "shared/entry.wgsl"
 #import "shared/water_surface.wgsl"
 #import "shared/receivers.wgsl"
 #import "shared/floor_distance.wgsl"
@@ -17,6 +20,7 @@
 #import "shared/flux.wgsl"
 #import "shared/footprint.wgsl"
 #import "shared/beam_triangle.wgsl"
+#import "shared/unit_flux.wgsl"
 #import "shared/grid.wgsl"
 #import "shared/account.wgsl"
 #import "shared/queue.wgsl"
@@ -44,12 +48,12 @@ struct Corner {
 
 fn corner_at(cells: vec2f) -> Corner {
     var c: Corner;
-    let xz = vertex_m(cells);
-    let water = water_surface_at(xz, light.wave_count);
-    let normal = normal_from_slope(water.y, water.z);
-    c.origin = vec3f(xz.x, water.x, xz.y);
-    c.direction = refract_direction(-light.to_light.xyz, normal, light.ior).xyz;
-    c.transmittance = fresnel_transmittance(dot(normal, light.to_light.xyz), light.ior);
+    var water = vec3f(0.0);
+    if light.kind != SUBMERGED { water = water_surface_at(vertex_m(cells), light.wave_count); }
+    let entry = entry_at(cells, water);
+    c.origin = entry.origin;
+    c.direction = entry.direction;
+    c.transmittance = entry.transmittance;
     c.hit = trace_light(c.origin, c.direction, light.object_count, light.has_floor == 1u);
     return c;
 }
@@ -96,8 +100,8 @@ fn part_of(points: ptr<function, array<Corner, 6>>, k: u32) -> Beam {
         b.receiver[j] = c.hit.receiver;
         transmittance += c.transmittance;
     }
-    b.flux_m2 = triangle_flux_m2(b.origin[0], b.origin[1], b.origin[2]);
-    b.transmitted_m2 = b.flux_m2 * (transmittance / 3.0);
+    b.unit_flux = triangle_unit_flux(b.origin, b.direction);
+    b.transmitted = b.unit_flux * (transmittance / 3.0);
     return b;
 }
 
@@ -142,13 +146,13 @@ fn halve(beam_index: u32, path: u32, is_last: bool) {
             push_part(beam_index, 4u * path + k);
             continue;
         }
-        note_term(TERM_EMITTED, b.flux_m2);
-        note_term(TERM_REFLECTED, b.flux_m2 - b.transmitted_m2);
-        if b.transmitted_m2 == 0.0 { continue; }
+        note_term(TERM_EMITTED, b.unit_flux);
+        note_term(TERM_REFLECTED, b.unit_flux - b.transmitted);
+        if b.transmitted == 0.0 { continue; }
         if straddles {
-            add_energy(TERM_TORN, b.transmitted_m2 * light.energy_scale);
+            add_energy(TERM_TORN, b.transmitted * light.energy_scale);
             atomicAdd(&energy[2u * TERM_TORN_COUNT], 1u);
-            if split.level < light.split_levels { add_energy(TERM_CUT, b.transmitted_m2 * light.energy_scale); }
+            if split.level < light.split_levels { add_energy(TERM_CUT, b.transmitted * light.energy_scale); }
         }
         note_losses(deposit_part(b, straddles));
     }

@@ -5,8 +5,8 @@ var<workgroup> account: array<atomic<u32>, 9>;
 // Counts finer than those of whole beams, a power of two: what notes small parts sets it before the first.
 var<private> finer: f32 = 1.0;
 
-fn note_term(term: u32, value_m2: f32) {
-    let counts = u32(value_m2 * (light.triangle_scale * finer) + 0.5);
+fn note_term(term: u32, unit_flux: f32) {
+    let counts = u32(unit_flux * (light.triangle_scale * finer) + 0.5);
     if counts > 0u { atomicAdd(&account[term], counts); }
 }
 

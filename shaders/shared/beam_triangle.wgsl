@@ -1,9 +1,9 @@
 // A beam: the triangle of water it comes through and the rays under its corners.
 
 struct Beam {
-    flux_m2: f32,        // what falls on the triangle under unit irradiance
-    transmitted_m2: f32, // what goes under water
-    origin: mat3x3f,     // corners on the surface, local m
+    unit_flux: f32,      // what falls on the triangle from a light of unit power, see triangle_unit_flux()
+    transmitted: f32,    // what of it goes under water
+    origin: mat3x3f,     // where the rays start, local m
     direction: mat3x3f,  // unit directions under them
     uv: mat3x2f,         // where they end, texels of the receiver's map
     t: vec3f,            // path lengths, m
@@ -16,6 +16,8 @@ fn target_of(r: Receiver) -> Target {
 
 // Whether the three rays end on one smooth piece of one receiver.
 fn is_whole(b: Beam) -> bool {
+    // Of a light under water some beams go half up and half to the far floor; there is nothing to be halved for.
+    if light.kind == SUBMERGED && all(b.receiver <= vec3i(FLOOR)) { return true; }
     if b.receiver.x != b.receiver.y || b.receiver.x != b.receiver.z { return false; }
     if b.receiver.x <= FLOOR { return true; }
     // On a mesh a jump in depth that the footprint does not explain is a step from one part to another.
@@ -25,6 +27,11 @@ fn is_whole(b: Beam) -> bool {
     let reach_m = 3.0 * texel_m * (max(high.x - low.x, high.y - low.y) + 1.0);
     let jump_m = max(b.t.x, max(b.t.y, b.t.z)) - min(b.t.x, min(b.t.y, b.t.z));
     return jump_m <= reach_m;
+}
+
+// Whether a beam that is whole meets no receiver.
+fn ends_nowhere(b: Beam) -> bool {
+    return any(b.receiver == vec3i(NO_RECEIVER));
 }
 
 // What a beam leaves behind in the energy account.
@@ -39,10 +46,10 @@ struct Losses {
 fn deposit_part(b: Beam, is_torn: bool) -> Losses {
     var losses = Losses(0.0, vec3f(0.0), vec3f(0.0));
     let pieces = select(1, 3, is_torn);
-    let flux_m2 = b.transmitted_m2 / f32(pieces);
+    let flux = b.transmitted / f32(pieces);
     for (var k = 0; k < pieces; k++) {
-        if b.receiver[k] == NO_RECEIVER {
-            losses.missed += flux_m2;
+        if b.receiver[k] == NO_RECEIVER || (!is_torn && ends_nowhere(b)) {
+            losses.missed += flux;
             continue;
         }
         let r = receivers[b.receiver[k]];
@@ -59,8 +66,8 @@ fn deposit_part(b: Beam, is_torn: bool) -> Losses {
                 uv[corner] = map_uv(r, b.origin[corner], b.direction[corner], t);
             }
         }
-        let arriving = flux_m2 * mean_transmission(lengths_m);
-        losses.extinguished += flux_m2 * mean_extinction(lengths_m);
+        let arriving = flux * mean_transmission(lengths_m);
+        losses.extinguished += flux * mean_extinction(lengths_m);
         losses.left += arriving * deposit_triangle(target_of(r), uv[0], uv[1], uv[2], arriving);
     }
     return losses;

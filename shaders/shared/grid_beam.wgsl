@@ -12,8 +12,7 @@ fn grid_beam(cell: vec2u, half: u32) -> Beam {
     for (var k = 0u; k < 3u; k++) {
         let ij = cell + corner_of(corners, k);
         let vertex = ij.y * side + ij.x;
-        let xz = vertex_m(vec2f(ij));
-        b.origin[k] = vec3f(xz.x, surface[vertex].x, xz.y);
+        b.origin[k] = origin_at(vec2f(ij), surface[vertex].x);
         let ray = beams[vertex];
         b.direction[k] = ray.xyz;
         transmittance += ray.w;
@@ -22,7 +21,7 @@ fn grid_beam(cell: vec2u, half: u32) -> Beam {
         b.t[k] = hit.z;
         b.receiver[k] = i32(hit.w);
     }
-    b.flux_m2 = triangle_flux_m2(b.origin[0], b.origin[1], b.origin[2]);
-    b.transmitted_m2 = b.flux_m2 * (transmittance / 3.0);
+    b.unit_flux = triangle_unit_flux(b.origin, b.direction);
+    b.transmitted = b.unit_flux * (transmittance / 3.0);
     return b;
 }

@@ -1,23 +1,30 @@
 // The light of one frame step and the water it falls on; the uniform of all passes that follow a light.
 
 struct Light {
-    to_light: vec4f,           // unit direction to the sun
+    source: vec4f,             // of a sun the unit direction to it, of a point light its place, local m
     extinction_per_m: vec4f,   // c per channel
-    window_min_m: vec2f,       // lower corner of the simulated water, local (x, z)
-    cell_m: vec2f,             // size of a water cell
+    window_min: vec2f,         // lower corner of the grid, in units of grid_place()
+    cell: vec2f,               // size of a grid cell, in the same
     cells: u32,                // cells along each side of the window
     wave_count: u32,
     object_count: u32,
     has_floor: u32,
     ior: f32,
-    flux_scale: f32,           // counts per m² of flux at unit irradiance
-    energy_scale: f32,         // counts per m² in the energy account
+    flux_scale: f32,           // counts per unit flux (a sun's m², a point light's sr)
+    energy_scale: f32,         // counts per unit flux in the energy account
     channels: u32,             // 1 when all channels fade alike, else 3
     split_levels: u32,
     layers: u32,               // receivers of an object: its surfaces along the light, nearest first
     wide_texels: u32,          // footprints with more texels than this go to a workgroup of their own
-    triangle_scale: f32,       // workgroup counts per m² in the energy account
+    triangle_scale: f32,       // workgroup counts per unit flux in the energy account
+    foot_m: vec2f,             // of a point light over the water: the local (x, z) around which the grid is finer; of a sun 0
+    bend_per_m2: f32,          // how much coarser the grid gets with the distance from there
+    kind: u32,                 // SUN, POINT or SUBMERGED
 }
+
+const SUN: u32 = 0u;
+const POINT: u32 = 1u;     // a point light over the water
+const SUBMERGED: u32 = 2u; // a point light under it
 
 @group(0) @binding(0) var<uniform> light: Light;
 
@@ -26,18 +33,27 @@ fn first_receiver_of(object: u32) -> u32 {
     return 1u + object * light.layers;
 }
 
-// Local (x, z) of grid vertex (i, j), which need not be whole.
+// Where grid vertex (i, j), which need not be whole, lies in the window: of a sun local (x, z) in m, of a point light over the water
+// the same before it is spread out, of one under water a place for octahedral_direction().
+fn grid_place(ij: vec2f) -> vec2f {
+    return light.window_min + ij * light.cell;
+}
+
+// Local (x, z) of a grid vertex on the water.
 fn vertex_m(ij: vec2f) -> vec2f {
-    return light.window_min_m + ij * light.cell_m;
+    let s = grid_place(ij);
+    return light.foot_m + s * (1.0 + light.bend_per_m2 * s * s);
+}
+
+// Where the ray of a grid vertex starts, under water of this height there.
+fn origin_at(ij: vec2f, height_m: f32) -> vec3f {
+    if light.kind == SUBMERGED { return light.source.xyz; }
+    let xz = vertex_m(ij);
+    return vec3f(xz.x, height_m, xz.y);
 }
 
 // Whether any light is lost on its way; without it no exponential is computed.
 override ATTENUATES: bool = true;
-
-// Flux into a triangle of water under unit irradiance, m²: its area as the sun sees it; 0 where it looks away.
-fn triangle_flux_m2(a: vec3f, b: vec3f, c: vec3f) -> f32 {
-    return max(0.5 * dot(cross(c - a, b - a), light.to_light.xyz), 0.0);
-}
 
 // Mean over a triangle's corners of what is left, per channel, after the corners' path lengths.
 fn mean_transmission(lengths_m: vec3f) -> vec3f {

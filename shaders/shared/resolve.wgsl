@@ -1,7 +1,7 @@
 // From flux sums to W/m²: what the passes that finish a sun's maps share.
 
 struct Resolve {
-    light_w_m2: vec4f,     // irradiance of the light on a plane facing it
+    power: vec4f,          // of a sun the irradiance of a plane facing it, W/m²; of a point light its intensity, W/sr
     first_texel: u32,      // piece of the flux sums
     texel_count: u32,
     first_output: u32,     // first texel in the irradiance array
@@ -31,5 +31,5 @@ fn density_at(texel: u32) -> f32 {
 fn resolved_w_m2(index: u32, channel: u32) -> f32 {
     let carried = select(0u, channel, light.channels == 3u);
     let counts = flux_counts(resolve.first_texel + index, carried, light.channels);
-    return counts * (density_at(resolve.first_texel + index) / light.flux_scale) * resolve.light_w_m2[channel];
+    return counts * (density_at(resolve.first_texel + index) / light.flux_scale) * resolve.power[channel];
 }

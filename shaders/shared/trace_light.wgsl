@@ -62,7 +62,10 @@ fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> H
 
 // First hit over the floor, if there is one, and `count` objects.
 fn trace_light(origin: vec3f, direction: vec3f, count: u32, has_floor: bool) -> Hit {
-    var best = Hit(vec2f(0.0), FAR_M, NO_RECEIVER);
+    // What goes up from a light under water ends at the level of the water at rest.
+    var reach = FAR_M;
+    if light.kind == SUBMERGED && direction.y > 0.0 { reach = clamp(-origin.y / direction.y, 0.0, FAR_M); }
+    var best = Hit(vec2f(0.0), reach, NO_RECEIVER);
     var beside = Hit(vec2f(0.0), FAR_M, NO_RECEIVER); // on the floor's plane, beside its rectangle
     if has_floor {
         let r = receivers[FLOOR];

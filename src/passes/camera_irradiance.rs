@@ -1,13 +1,11 @@
-//! Camera irradiance — the light on what each pixel sees: from the receivers' maps under water, from the suns above it.
+//! Camera irradiance — the light on what each pixel sees: from the receivers' maps under water, from the lights above it.
 
 use super::camera_hits::{pixel_step, wanted_for_camera};
 use super::desc::{PassDesc, Repeat};
-use super::gpu_data::{SunLight, vec4};
+use super::gpu_data::{AirLight, vec4};
 use super::slot::Slot;
-use crate::scene::facts::SceneFacts;
-
-/// Suns that the shader has room for.
-pub const MAX_SUNS: usize = 16;
+use crate::scene::facts::{MOST_LIGHTS, SceneFacts};
+use crate::scene::source::Source;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
@@ -40,11 +38,17 @@ pub const PASS: PassDesc = PassDesc {
 };
 
 fn suns(facts: &SceneFacts) -> Vec<u8> {
-    let mut suns = [SunLight::default(); MAX_SUNS];
-    for (slot, (to_light, irradiance)) in suns.iter_mut().zip(&facts.air_suns) {
-        *slot = SunLight {
-            to_light: vec4(*to_light, 0.0),
-            irradiance_w_m2: vec4(*irradiance, 0.0),
+    // No more than that pass the facts.
+    let mut suns = [AirLight::default(); MOST_LIGHTS];
+    for (slot, light) in suns.iter_mut().zip(&facts.air_suns) {
+        *slot = AirLight {
+            source: match light.source {
+                Source::Sun { to_light } => vec4(to_light, 0.0),
+                Source::Point { position_m } | Source::Submerged { position_m } => {
+                    vec4(position_m, 1.0)
+                }
+            },
+            power: vec4(light.power, 0.0),
         };
     }
     bytemuck::bytes_of(&suns).to_vec()

@@ -24,10 +24,10 @@ gpu_struct! {
     /// The light of `shaders/shared/light.wgsl`; fields are documented there.
     #[expect(missing_docs, reason = "documented in the WGSL twin")]
     Light = "Light" {
-        to_light: [f32; 4],
+        source: [f32; 4],
         extinction_per_m: [f32; 4],
-        window_min_m: [f32; 2],
-        cell_m: [f32; 2],
+        window_min: [f32; 2],
+        cell: [f32; 2],
         cells: u32,
         wave_count: u32,
         object_count: u32,
@@ -40,6 +40,9 @@ gpu_struct! {
         layers: u32,
         wide_texels: u32,
         triangle_scale: f32,
+        foot_m: [f32; 2],
+        bend_per_m2: f32,
+        kind: u32,
     }
 }
 
@@ -109,7 +112,7 @@ gpu_struct! {
     /// The uniform of `shaders/shared/resolve.wgsl`; fields are documented there.
     #[expect(missing_docs, reason = "documented in the WGSL twin")]
     Resolve = "Resolve" {
-        light_w_m2: [f32; 4],
+        power: [f32; 4],
         first_texel: u32,
         texel_count: u32,
         first_output: u32,
@@ -168,11 +171,11 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// A sun of `shaders/passes/camera_irradiance.wgsl`; fields are documented there.
+    /// A light in the air of `shaders/passes/camera_irradiance.wgsl`; fields are documented there.
     #[expect(missing_docs, reason = "documented in the WGSL twin")]
-    SunLight = "SunLight" {
-        to_light: [f32; 4],
-        irradiance_w_m2: [f32; 4],
+    AirLight = "AirLight" {
+        source: [f32; 4],
+        power: [f32; 4],
     }
 }
 
@@ -223,7 +226,7 @@ pub const LAYOUTS: [Layout; 11] = [
     Resolve::LAYOUT,
     Span::LAYOUT,
     View::LAYOUT,
-    SunLight::LAYOUT,
+    AirLight::LAYOUT,
     LevelMapView::LAYOUT,
     Instance::LAYOUT,
 ];

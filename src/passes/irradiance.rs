@@ -106,7 +106,7 @@ pub(super) fn resolve_steps(entry: &'static str, facts: &SceneFacts, run: Run<'_
     for piece in pieces(facts, index) {
         let is_floor = piece.first_texel == 0 && facts.floor_map.is_some();
         let resolve = Resolve {
-            light_w_m2: vec4(facts.suns[index].irradiance_w_m2, 0.0),
+            power: vec4(facts.suns[index].power, 0.0),
             first_texel: piece.first_texel,
             texel_count: piece.texels,
             first_output: piece.first_output,

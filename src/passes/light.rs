@@ -1,8 +1,17 @@
-//! What the passes that follow a sun share: its uniform, and the receivers' maps.
+//! What the passes that follow a light share: its uniform, and the receivers' maps.
+//!
+//! Flux is counted per unit power: a sun's in m² under 1 W/m², a point light's in sr at 1 W/sr.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
 
 use super::gpu_data::{Light, Receiver, vec2, vec4};
 use super::maps::MapLayout;
+use crate::physics::solid_angle::solid_angle;
 use crate::scene::facts::{SceneFacts, SunFacts};
+use crate::scene::source::Source;
+use crate::scene::window::Rect;
 
 /// Footprints of more texels than this get workgroups of their own.
 const WIDE_TEXELS: u32 = 1024;
@@ -25,24 +34,82 @@ const NARROW_HEADROOM: f64 = 1024.0;
 /// The same in the account of a workgroup, whose 128 beams must fit u32 together.
 const BEAM_ACCOUNT_COUNTS: f64 = 8_388_608.0;
 
-/// Flux that one beam can carry at most under unit irradiance, m².
-fn largest_beam_m2(facts: &SceneFacts, sun: &SunFacts) -> f64 {
-    let cells = f64::from(facts.quality.water_cells);
-    let cell = sun.window.size() / cells;
-    let sideways = glam::DVec2::new(sun.to_light.x, sun.to_light.z).length();
-    0.5 * cell.x * cell.y * (sun.to_light.y + facts.surface.max_slope() * sideways)
+/// Pieces of the grid along one axis in which the largest beam is looked for.
+const PIECES: u32 = 24;
+/// Largest solid angle per area of the octahedral square, sr, and half as much again for triangles bent over its edges.
+const OCTAHEDRAL_SR: f64 = 1.5 * 5.196_152_422_706_632;
+
+/// Flux that one beam can carry at most from a light of unit power.
+fn largest_beam(facts: &SceneFacts, sun: &SunFacts) -> f64 {
+    let cell = sun.grid.places.size() / f64::from(facts.quality.water_cells);
+    match sun.source {
+        Source::Sun { to_light } => {
+            let sideways = DVec2::new(to_light.x, to_light.z).length();
+            0.5 * cell.x * cell.y * (to_light.y + facts.surface.max_slope() * sideways)
+        }
+        Source::Submerged { .. } => (0.5 * cell.x * cell.y * OCTAHEDRAL_SR).min(TAU),
+        Source::Point { position_m } => lamp_beam(facts, sun, position_m, cell),
+    }
 }
 
-/// The uniform of one sun.
+/// Largest solid angle of half a cell, sr: at most its area over the square of its least distance, and never more than half of all
+/// directions.
+fn lamp_beam(facts: &SceneFacts, sun: &SunFacts, position_m: DVec3, cell: DVec2) -> f64 {
+    let grid = &sun.grid;
+    // Per piece of an axis: the largest cell side in it, and its least distance from the light's foot.
+    let pieces = |low: f64, high: f64, step: f64| -> Vec<(f64, f64)> {
+        let at = |k: u32| low + (high - low) * f64::from(k) / f64::from(PIECES);
+        (0..PIECES)
+            .map(|k| {
+                let (from, to) = (at(k) - step, at(k + 1) + step);
+                let far = from.abs().max(to.abs());
+                let near = if from < 0.0 && to > 0.0 {
+                    0.0
+                } else {
+                    from.abs().min(to.abs())
+                };
+                (
+                    step * grid.stretch(far),
+                    near * (1.0 + grid.bend_per_m2 * near * near),
+                )
+            })
+            .collect()
+    };
+    let along_x = pieces(grid.places.min.x, grid.places.max.x, cell.x);
+    let along_z = pieces(grid.places.min.y, grid.places.max.y, cell.y);
+    let rise_m = (position_m.y - facts.surface.max_height_m()).max(0.0);
+    let tilted = facts.surface.max_slope().hypot(1.0);
+    let mut largest: f64 = 0.0;
+    for &(side_x, near_x) in &along_x {
+        for &(side_z, near_z) in &along_z {
+            let distance2 = rise_m * rise_m + near_x * near_x + near_z * near_z;
+            let area = 0.5 * side_x * side_z * tilted;
+            // Written so that no distance at all counts as half of all directions.
+            largest = largest.max(if area < TAU * distance2 {
+                area / distance2
+            } else {
+                TAU
+            });
+        }
+    }
+    largest
+}
+
+/// The uniform of one light.
 pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u8> {
     let sun = &facts.suns[index];
     let cells = facts.quality.water_cells;
-    let beam_m2 = largest_beam_m2(facts, sun);
+    let beam = largest_beam(facts, sun);
+    let (source, kind) = match sun.source {
+        Source::Sun { to_light } => (to_light, 0),
+        Source::Point { position_m } => (position_m, 1),
+        Source::Submerged { position_m } => (position_m, 2),
+    };
     let light = Light {
-        to_light: vec4(sun.to_light, 0.0),
+        source: vec4(source, 0.0),
         extinction_per_m: vec4(facts.extinction_per_m, 0.0),
-        window_min_m: vec2(sun.window.min),
-        cell_m: vec2(sun.window.size() / f64::from(cells)),
+        window_min: vec2(sun.grid.places.min),
+        cell: vec2(sun.grid.places.size() / f64::from(cells)),
         cells,
         wave_count: facts.surface.components.len() as u32,
         object_count: facts.objects.len() as u32,
@@ -54,67 +121,127 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
         split_levels: facts.quality.split_levels,
         layers: facts.quality.layers,
         wide_texels: WIDE_TEXELS,
-        triangle_scale: (BEAM_ACCOUNT_COUNTS / beam_m2).log2().floor().exp2() as f32,
+        triangle_scale: (BEAM_ACCOUNT_COUNTS / beam).log2().floor().exp2() as f32,
+        foot_m: vec2(sun.grid.foot_m),
+        bend_per_m2: sun.grid.bend_per_m2 as f32,
+        kind,
     };
     bytemuck::bytes_of(&light).to_vec()
 }
 
-/// Counts per m² in the energy account of a sun; a power of two, so that scaling is exact.
+/// Counts per unit flux in the energy account of a light; a power of two, so that scaling is exact.
 pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
-    let all_m2 = largest_beam_m2(facts, &facts.suns[index])
+    let all = largest_beam(facts, &facts.suns[index])
         * 2.0
         * f64::from(facts.quality.water_cells).powi(2);
-    (2.0_f64.powi(60) / all_m2).log2().floor().exp2()
+    (2.0_f64.powi(60) / all).log2().floor().exp2()
 }
 
-/// Counts per m² in the flux sums; a power of two.
+/// Counts per unit flux in the flux sums; a power of two.
 ///
 /// Wide sums take the largest beam at 2⁴⁰. Narrow ones take it at 2³⁰ at most and leave room for [`NARROW_HEADROOM`] times the
 /// flux of an evenly lit texel.
 pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
-    let beam_m2 = largest_beam_m2(facts, &facts.suns[index]);
+    let beam = largest_beam(facts, &facts.suns[index]);
     if wide_sums {
-        return (WIDE_BEAM_COUNTS / beam_m2).log2().floor().exp2();
+        return (WIDE_BEAM_COUNTS / beam).log2().floor().exp2();
     }
-    let texel_m2 = texel_fluxes_m2(facts, index).fold(0.0, f64::max);
-    let narrow = WRAP_COUNTS / (NARROW_HEADROOM * texel_m2);
-    narrow.min(BEAM_COUNTS / beam_m2).log2().floor().exp2()
+    let texel = texel_fluxes(facts, index)
+        .map(|t| t.brightest)
+        .fold(0.0, f64::max);
+    let narrow = WRAP_COUNTS / (NARROW_HEADROOM * texel);
+    narrow.min(BEAM_COUNTS / beam).log2().floor().exp2()
 }
 
-/// Flux of an evenly lit texel of each receiver's map under unit irradiance, m².
-fn texel_fluxes_m2(facts: &SceneFacts, index: usize) -> impl Iterator<Item = f64> {
+/// Flux of a texel of a map under flat water and a light of unit power.
+struct TexelFlux {
+    /// Where the light is nearest.
+    brightest: f64,
+    /// Mean over the map.
+    mean: f64,
+}
+
+/// That of each receiver's map.
+fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelFlux> {
     let sun = &facts.suns[index];
-    let floor = facts.floor_map.map(|map| {
-        sun.to_light.y * map.rect.size().x * map.rect.size().y / f64::from(map.width * map.height)
+    let even = |flux: f64| TexelFlux {
+        brightest: flux,
+        mean: flux,
+    };
+    let floor = facts.floor_map.map(move |map| {
+        let texels = f64::from(map.width) * f64::from(map.height);
+        let area_m2 = map.rect.size().x * map.rect.size().y / texels;
+        match (sun.source, &facts.floor) {
+            (Source::Sun { to_light }, _) => even(to_light.y * area_m2),
+            (_, Some(floor)) => lamp_on_floor(sun, &map.rect, floor.y_m, facts.ior, texels),
+            (_, None) => even(area_m2),
+        }
     });
-    let objects = sun.boxes.iter().flatten();
-    floor
-        .into_iter()
-        .chain(objects.map(|b| 1.0 / b.density_per_flux))
+    let objects = sun.boxes.iter().zip(&facts.objects);
+    let objects = objects.filter_map(move |(level_box, object)| {
+        let area_m2 = 1.0 / level_box.as_ref()?.density_per_flux;
+        let Some(position_m) = sun.source.position_m() else {
+            return Some(even(area_m2));
+        };
+        let middle_m = object.wet_middle();
+        let rise_m = sun.source.seeming_height_m(middle_m.y, facts.ior);
+        let way_m = (middle_m - position_m).with_y(rise_m).length();
+        let radius_m = 0.5 * (object.max - object.min).length();
+        let near_m = (way_m - radius_m).max(0.1 * radius_m).max(1e-6);
+        let share = |distance_m: f64| (area_m2 / (distance_m * distance_m)).min(TAU);
+        Some(TexelFlux {
+            brightest: share(near_m),
+            mean: share(way_m.max(near_m)),
+        })
+    });
+    floor.into_iter().chain(objects)
 }
 
-/// Whether narrow sums would be too coarse for a sun from the start: very many beams on a texel, texels under a beam, or beams
+/// A point light on the floor's map.
+fn lamp_on_floor(sun: &SunFacts, rect: &Rect, y_m: f64, ior: f64, texels: f64) -> TexelFlux {
+    let foot_m = sun
+        .source
+        .position_m()
+        .map_or(DVec2::ZERO, |p| DVec2::new(p.x, p.z));
+    let height_m = sun.source.seeming_height_m(y_m, ior).max(1e-6);
+    let (low, high) = (rect.min - foot_m, rect.max - foot_m);
+    let corner = DVec3::new(low.x, -height_m, low.y);
+    let (along_x, along_z) = (DVec3::X * (high.x - low.x), DVec3::Z * (high.y - low.y));
+    let whole = solid_angle(corner, along_x, along_x + along_z)
+        + solid_angle(corner, along_x + along_z, along_z);
+    let aside_m = low.max(-high).max(DVec2::ZERO).length();
+    let area_m2 = (high.x - low.x) * (high.y - low.y) / texels;
+    let distance_m = height_m.hypot(aside_m);
+    let mean = whole.abs() / texels;
+    TexelFlux {
+        brightest: (area_m2 * height_m / distance_m.powi(3)).min(TAU).max(mean),
+        mean,
+    }
+}
+
+/// Whether narrow sums would be too coarse for a light from the start: very many beams on a texel, texels under a beam, or beams
 /// in very small parts.
 pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     let scale = flux_scale(facts, index, false);
-    let coarsest_m2 = texel_fluxes_m2(facts, index).fold(0.0, f64::max);
-    let finest_m2 = texel_fluxes_m2(facts, index).fold(f64::INFINITY, f64::min);
+    let means = || texel_fluxes(facts, index).map(|t| t.mean);
+    let coarsest = means().fold(0.0, f64::max);
+    let finest = means().fold(f64::INFINITY, f64::min);
     let parts = if facts.wet_objects().next().is_some() {
         4.0_f64.powi(facts.quality.split_levels as i32)
     } else {
         1.0
     };
-    scale * largest_beam_m2(facts, &facts.suns[index]) < FINE_COUNTS.max(PART_COUNTS * parts)
-        || scale * coarsest_m2 < FINE_COUNTS
-        || scale * finest_m2 < FINEST_MAP_COUNTS
+    scale * largest_beam(facts, &facts.suns[index]) < FINE_COUNTS.max(PART_COUNTS * parts)
+        || scale * coarsest < FINE_COUNTS
+        || scale * finest < FINEST_MAP_COUNTS
 }
 
-/// Whether narrow sums of a sun have wrapped: what landed is then short by at least one whole 2³² counts.
-pub fn has_wrapped(facts: &SceneFacts, index: usize, missing_m2: f64) -> bool {
-    missing_m2 > 0.5 * WRAP_COUNTS / flux_scale(facts, index, false)
+/// Whether narrow sums of a light have wrapped: what landed is then short by at least one whole 2³² counts.
+pub fn has_wrapped(facts: &SceneFacts, index: usize, missing: f64) -> bool {
+    missing > 0.5 * WRAP_COUNTS / flux_scale(facts, index, false)
 }
 
-/// The receivers of one sun: the floor, then those of the objects, one per layer; `level_map_offset` tells where in the arena an
+/// The receivers of one light: the floor, then those of the objects, one per layer; `level_map_offset` tells where in the arena an
 /// object's map lies.
 pub fn receivers(
     facts: &SceneFacts,
@@ -174,7 +301,7 @@ fn floor_receiver(facts: &SceneFacts) -> Receiver {
         ..Receiver::default()
     };
     if let Some(map) = facts.floor_map {
-        let per_m = glam::DVec2::new(f64::from(map.width), f64::from(map.height)) / map.rect.size();
+        let per_m = DVec2::new(f64::from(map.width), f64::from(map.height)) / map.rect.size();
         receiver.u_row = [per_m.x as f32, 0.0, 0.0, (-map.rect.min.x * per_m.x) as f32];
         receiver.v_row = [0.0, 0.0, per_m.y as f32, (-map.rect.min.y * per_m.y) as f32];
         receiver.map_width = map.width;

@@ -1,9 +1,10 @@
-//! Surface — height and slope of the water at the vertices of a sun's window. The pass to copy.
+//! Surface — height and slope of the water at the vertices of a light's window. The pass to copy.
 
 use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::light::light_uniform;
 use super::slot::Slot;
 use crate::scene::facts::SceneFacts;
+use crate::scene::source::Source;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
@@ -13,7 +14,13 @@ pub const PASS: PassDesc = PassDesc {
     reads_if_present: &[],
     writes: &[Slot::Surface],
     wanted: wanted_for_sun,
-    steps: |facts, run| grid_step("surface_main", facts, run),
+    steps: |facts, run| match run {
+        // Its rays start at the light and pass no surface.
+        Run::Sun { index, .. } if matches!(facts.suns[index].source, Source::Submerged { .. }) => {
+            Vec::new()
+        }
+        _ => grid_step("surface_main", facts, run),
+    },
 };
 
 /// Passes that follow a sun are in when there is one and something under water waits for it.
@@ -25,20 +32,51 @@ pub(super) fn wanted_for_sun(facts: &SceneFacts) -> Result<String, String> {
         return Err("no sun above the horizon shines into the water".to_owned());
     }
     let waves = facts.surface.components.len();
-    Ok(format!(
-        "{} sun{} into {}",
-        facts.suns.len(),
-        if facts.suns.len() == 1 {
-            " shines"
+    let count = |wanted: fn(&Source) -> bool, name: &str, names: &str| {
+        let count = facts.suns.iter().filter(|s| wanted(&s.source)).count();
+        match count {
+            0 => None,
+            1 => Some(format!("1 {name}")),
+            _ => Some(format!("{count} {names}")),
+        }
+    };
+    let over: Vec<String> = [
+        count(|s| matches!(s, Source::Sun { .. }), "sun", "suns"),
+        count(
+            |s| matches!(s, Source::Point { .. }),
+            "point light",
+            "point lights",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let under = count(
+        |s| matches!(s, Source::Submerged { .. }),
+        "light shines under the water, through no surface",
+        "lights shine under the water, through no surface",
+    );
+    if over.is_empty() {
+        return Ok(under.unwrap_or_default());
+    }
+    let into = format!(
+        "{} {} into {}",
+        over.join(" and "),
+        if over.len() == 1 && over[0].starts_with("1 ") {
+            "shines"
         } else {
-            "s shine"
+            "shine"
         },
         if facts.surface.max_slope() == 0.0 {
             "flat water".to_owned()
         } else {
             format!("water with {waves} wave components")
         },
-    ))
+    );
+    Ok(match under {
+        Some(under) => format!("{into}; {under}"),
+        None => into,
+    })
 }
 
 /// One invocation per grid vertex.

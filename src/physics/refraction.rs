@@ -16,6 +16,28 @@ pub fn refract_direction(direction: DVec3, normal: DVec3, eta: f64) -> Option<DV
     Some((direction / eta + normal * (cos_i / eta - cos_t)).normalize())
 }
 
+/// Horizontal distance (m) from the foot of a light to where its ray enters flat water on the way to a point.
+///
+/// The light is `height_m` (0 …) above the water, the point `depth_m` (0 …) under it and `distance_m` (0 …) away from the light's
+/// foot: the x in 0 … `distance_m` with x/√(x² + h²) = η (r − x)/√((r − x)² + d²), found by bisection to the last digit. Of a point on
+/// the surface `distance_m` itself. Source: Snell's law; Tipprasert's thesis, §4.2.1, eq. 2-8, takes the ray to an object's origin.
+pub fn entry_distance(height_m: f64, depth_m: f64, distance_m: f64, eta: f64) -> f64 {
+    let sine = |x: f64, y: f64| if x > 0.0 { x / x.hypot(y) } else { 0.0 };
+    let (mut low, mut high) = (0.0, distance_m);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if sine(middle, height_m) < eta * sine(distance_m - middle, depth_m) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
 /// Mirror direction of unit `direction` at unit `normal`: d − 2 (d·n) n.
 pub fn reflect_direction(direction: DVec3, normal: DVec3) -> DVec3 {
     direction - normal * (2.0 * direction.dot(normal))

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{attenuation, coverage, fresnel, refraction, sky, turns};
+use super::{attenuation, coverage, fresnel, octahedral, refraction, sky, solid_angle, turns};
 
 /// Range of an argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -280,9 +280,74 @@ pub const SKY_TWINS: [Twin; 2] = [
     },
 ];
 
-/// All twins, the sky's included.
+const SIDEWAYS: Domain = range(-4.0, 4.0, &[0.0, 1e-6, 0.25]);
+const SMALL_SIDE: Domain = range(-0.5, 0.5, &[0.0, 1e-4, 0.5]);
+const SMALL_RISE: Domain = range(-0.25, 0.25, &[0.0, 1e-5]);
+
+/// The twins of point lights.
+pub const LAMP_TWINS: [Twin; 3] = [
+    Twin {
+        name: "point_angle",
+        file: "lib/solid_angle.wgsl",
+        domain: &[
+            range(-8.0, 8.0, &[0.0, 1e-30, 1e-6, -1e-6, 1.0]),
+            range(-8.0, 8.0, &[0.0, 1e-30, 1e-6, -1e-6, 1.0]),
+        ],
+        call: "vec4f(point_angle(a[0], a[1]), 0.0, 0.0, 0.0)",
+        original: |a| Some([solid_angle::point_angle(a[0], a[1]), 0.0, 0.0, 0.0]),
+        tolerance: tolerance(
+            0.0,
+            6e-7,
+            "a division of 2.5 ulp, a polynomial of 1 ulp and the rounding of π",
+        ),
+    },
+    Twin {
+        name: "solid_angle",
+        file: "lib/solid_angle.wgsl",
+        domain: &[
+            SIDEWAYS,
+            range(-8.0, -0.5, &[-0.5, -1.0]),
+            SIDEWAYS,
+            SMALL_SIDE,
+            SMALL_RISE,
+            SMALL_SIDE,
+            SMALL_RISE,
+            SMALL_SIDE,
+        ],
+        call: "vec4f(solid_angle(vec3f(a[0], a[1], a[2]), vec3f(a[3], a[4], 0.1), vec3f(a[5], a[6], a[7])), 0.0, 0.0, 0.0)",
+        original: |a| {
+            let omega = solid_angle::solid_angle(
+                DVec3::new(a[0], a[1], a[2]),
+                DVec3::new(a[3], a[4], f64::from(0.1_f32)),
+                DVec3::new(a[5], a[6], a[7]),
+            );
+            Some([omega, 0.0, 0.0, 0.0])
+        },
+        tolerance: tolerance(
+            1e-6,
+            2e-6,
+            "rounding of the triple product of sides up to 0.5 m at a distance of 0.5 m, over the distance squared",
+        ),
+    },
+    Twin {
+        name: "octahedral_direction",
+        file: "lib/octahedral.wgsl",
+        domain: &[
+            range(-1.0, 1.0, &[-1.0, 0.0, 1e-6, 0.5, 1.0]),
+            range(-1.0, 1.0, &[-1.0, 0.0, 1e-6, 0.5, 1.0]),
+        ],
+        call: "vec4f(octahedral_direction(a[0], a[1]), 0.0)",
+        original: |a| {
+            let d = octahedral::octahedral_direction(a[0], a[1]);
+            Some([d.x, d.y, d.z, 0.0])
+        },
+        tolerance: tolerance(5e-7, 0.0, "rounding of a unit vector"),
+    },
+];
+
+/// All twins, those of skies and point lights included.
 pub fn all() -> impl Iterator<Item = &'static Twin> {
-    TWINS.iter().chain(SKY_TWINS.iter())
+    TWINS.iter().chain(&SKY_TWINS).chain(&LAMP_TWINS)
 }
 
 /// WGSL of the helper that calls use to make an incident direction; it is part of the test, not of the library.

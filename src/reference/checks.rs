@@ -1,7 +1,7 @@
-//! Figures that can be counted with, and the suns that count.
+//! Figures that can be counted with, and the suns and point lights that count.
 
 use super::ReferenceError;
-use crate::scene::{Light, Output, Scene, Sun, Water};
+use crate::scene::{Light, Output, PointLight, Scene, Sun, Water};
 use crate::waves::WaterSurface;
 
 /// The extinction of a water that can be counted in, 1/m.
@@ -33,25 +33,51 @@ fn check(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), Refe
     })
 }
 
-/// The suns that shine into the water of `scene`.
-pub(super) fn suns(scene: &Scene) -> Result<Vec<&Sun>, ReferenceError> {
+/// The lights that the output counts.
+fn counted(scene: &Scene) -> Result<impl Iterator<Item = &Light>, ReferenceError> {
     let only = match &scene.output {
         Output::IrradianceMap(output) => output.light,
         Output::View(_) => None,
     };
     if let Some(index) = only
-        && !matches!(scene.lights.get(index as usize), Some(Light::Sun(_)))
+        && !matches!(
+            scene.lights.get(index as usize),
+            Some(Light::Sun(_) | Light::Point(_))
+        )
     {
         return Err(ReferenceError::NotASun {
             index,
             lights: scene.lights.len(),
         });
     }
+    let lights = scene.lights.iter().enumerate();
+    Ok(lights
+        .filter(move |(index, _)| only.is_none_or(|only| only as usize == *index))
+        .map(|(_, light)| light))
+}
+
+/// The point lights of `scene`.
+pub(super) fn point_lights(scene: &Scene) -> Result<Vec<&PointLight>, ReferenceError> {
+    let mut points = Vec::new();
+    for light in counted(scene)? {
+        if let Light::Point(point) = light {
+            for place in point.position_m {
+                check("a point light's position_m", place, f64::MIN, f64::MAX)?;
+            }
+            for intensity in point.intensity_w_sr {
+                check("a point light's intensity_w_sr", intensity, 0.0, f64::MAX)?;
+            }
+            points.push(point);
+        }
+    }
+    Ok(points)
+}
+
+/// The suns that shine into the water of `scene`.
+pub(super) fn suns(scene: &Scene) -> Result<Vec<&Sun>, ReferenceError> {
     let mut suns = Vec::new();
-    for (index, light) in scene.lights.iter().enumerate() {
-        if let Light::Sun(sun) = light
-            && only.is_none_or(|only| only as usize == index)
-        {
+    for light in counted(scene)? {
+        if let Light::Sun(sun) = light {
             check("a sun's elevation_deg", sun.elevation_deg, -90.0, 90.0)?;
             check("a sun's azimuth_deg", sun.azimuth_deg, f64::MIN, f64::MAX)?;
             for irradiance in sun.irradiance_w_m2 {

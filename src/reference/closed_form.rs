@@ -242,3 +242,43 @@ fn bisect(mut a: f64, mut b: f64, before: impl Fn(f64) -> bool) -> f64 {
     }
     0.5 * (a + b)
 }
+
+/// A point light of 1 W/sr over flat water, or under it; everything depends on the distance from the point below it only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LampOverFlatWater {
+    /// Light above the water, m; below 0 it is under it.
+    pub height_m: f64,
+    /// Floor below the water, m, above 0 and deeper than the light.
+    pub depth_m: f64,
+    /// Index of refraction, 1 …
+    pub ior: f64,
+    /// c, 1/m, 0 …
+    pub extinction_per_m: f64,
+}
+
+impl LampOverFlatWater {
+    /// Irradiance of the floor `distance_m` (0 …) away from the point below the light, W/m² per W/sr.
+    ///
+    /// A ray that enters at ρ lands at r(ρ) = ρ + D tan θ_t. What goes through the ring dρ of the water, I h/(ρ² + h²)^(3/2) · 2πρ dρ,
+    /// spreads over the ring 2πr dr: E = I T h/(ρ² + h²)^(3/2) · (ρ/r)/(dr/dρ) · e^(−c d). Under water: I H/(r² + H²)^(3/2) · e^(−c d).
+    pub fn irradiance_at(&self, distance_m: f64) -> f64 {
+        if self.height_m <= 0.0 {
+            let down_m = self.depth_m + self.height_m;
+            let path_m = down_m.hypot(distance_m);
+            return down_m / path_m.powi(3) * transmission(self.extinction_per_m, path_m);
+        }
+        let (h, n) = (self.height_m, self.ior);
+        // tan θ_t = ρ/g and its derivative n²h²/g³, g² = (n² − 1)ρ² + n²h².
+        let g = |rho: f64| ((n * n - 1.0) * rho * rho + n * n * h * h).sqrt();
+        let rho_m = bisect(0.0, distance_m, |rho| {
+            rho + self.depth_m * rho / g(rho) < distance_m
+        });
+        let g = g(rho_m);
+        let slant_m = rho_m.hypot(h);
+        let path_m = self.depth_m * (rho_m / g).hypot(1.0);
+        let per_ring = 1.0 / (1.0 + self.depth_m / g);
+        let stretch = 1.0 + self.depth_m * n * n * h * h / g.powi(3);
+        fresnel_transmittance(h / slant_m, n) * h / slant_m.powi(3) * per_ring / stretch
+            * transmission(self.extinction_per_m, path_m)
+    }
+}

@@ -4,12 +4,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DVec2, DVec3};
 
-use super::checks::{check_surface, check_water, suns};
+use super::checks::{check_surface, check_water, point_lights, suns};
 use super::floor::FloorMap;
+use super::lamp::Lamp;
 use super::lattice::{Lattice, SECOND_HALF, uniform};
 use super::occluders::Occluders;
 use super::tally::Tally;
-use super::trace::Beam;
+use super::trace::{Beam, Ground};
 use super::window::{LightWindow, Target, window_of};
 use super::{ReferenceError, ReferenceSettings};
 use crate::physics::refraction::direction_to_light;
@@ -60,13 +61,14 @@ pub struct ReferenceMap {
     pub landed_w: Vec<[f64; 3]>,
     /// Where the rest went.
     pub energy: EnergyTerms,
-    /// The water that was looked at, per sun, world coordinates.
+    /// The water that was looked at, per light, first the suns, then the point lights, world coordinates (of a point light under water
+    /// the piece of floor).
     pub windows: Vec<LightWindow>,
 }
 
 /// Counts the light on the floor of `resolved.scene`, whose output must be an irradiance map of it.
 ///
-/// All suns above the horizon count, or the one in `output.light`. Each texel holds Σ E·dA·(n·l)/n_y·T·e^(−(a+b)d) of the rays
+/// All suns above the horizon and all point lights count, or the one in `output.light`. Each texel holds Σ E·dA·(n·l)/n_y·T·e^(−(a+b)d) of the rays
 /// that land in it, over its area; n·l below 0 counts as 0. The bits do not depend on the number of threads. `progress` hears
 /// the finished part, 0 … 1, from any thread, as far as it can be foreseen; it falls back when a round needs another after all.
 pub fn irradiance_map(
@@ -108,10 +110,19 @@ pub(super) fn count(
     }
 }
 
-/// One sun and its window.
-struct CountedSun {
-    to_light: DVec3,
-    irradiance_w_m2: [f64; 3],
+/// Where counted light comes from.
+enum CountedSource {
+    /// A sun, by the direction to it.
+    Sun(DVec3),
+    /// A point light, by its place.
+    Lamp(DVec3),
+}
+
+/// One light and its window.
+struct CountedLight {
+    source: CountedSource,
+    /// W/m² on a plane facing the sun, or W/sr of the point light.
+    power: [f64; 3],
     window: LightWindow,
 }
 
@@ -130,7 +141,7 @@ struct Counter<'a, const K: usize> {
     map: FloorMap,
     occluders: Occluders,
     surface: WaterSurface,
-    suns: Vec<CountedSun>,
+    suns: Vec<CountedLight>,
     extinction_per_m: [f64; K],
     /// Which coefficient each channel has.
     coefficient_of: [usize; 3],
@@ -153,20 +164,25 @@ impl<'a, const K: usize> Counter<'a, K> {
             max_m: DVec3::new(size_m.x, -map.depth_m, size_m.y),
         }];
         targets.extend(occluders.bounds.iter().copied());
-        let suns = suns(scene)?
-            .into_iter()
-            .map(|sun| {
-                let to_light = direction_to_light(
-                    sun.elevation_deg.to_radians(),
-                    sun.azimuth_deg.to_radians(),
-                );
-                CountedSun {
-                    to_light,
-                    irradiance_w_m2: sun.irradiance_w_m2,
-                    window: window_of(&surface, to_light, scene.water.ior, &targets),
-                }
-            })
-            .collect();
+        let suns = suns(scene)?.into_iter().map(|sun| {
+            let to_light =
+                direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians());
+            CountedLight {
+                source: CountedSource::Sun(to_light),
+                power: sun.irradiance_w_m2,
+                window: window_of(&surface, to_light, scene.water.ior, &targets),
+            }
+        });
+        let corner_m = DVec3::new(map.origin_m.x, scene.water.level_m, map.origin_m.y);
+        let lamps = point_lights(scene)?.into_iter().map(|point| {
+            let position_m = DVec3::from(point.position_m) - corner_m;
+            CountedLight {
+                source: CountedSource::Lamp(position_m),
+                power: point.intensity_w_sr,
+                window: Lamp::new(&surface, position_m, scene.water.ior).window(&targets),
+            }
+        });
+        let suns = suns.chain(lamps).collect();
         Ok(Self {
             scene,
             map,
@@ -240,15 +256,12 @@ impl<'a, const K: usize> Counter<'a, K> {
         ];
         let mut tallies = Vec::new();
         for (index, sun) in self.suns.iter().enumerate() {
-            let beam = Beam {
+            let ground = Ground {
                 map: &self.map,
                 occluders: &self.occluders,
-                surface: &self.surface,
-                to_light: sun.to_light,
-                ior: self.scene.water.ior,
                 extinction_per_m: self.extinction_per_m,
-                window: sun.window,
             };
+            let ior = self.scene.water.ior;
             let mut both: Option<Tally<K>> = None;
             let mut points_per_texel = per_texel * FIRST_HALF;
             for (half, irradiance) in halves.iter_mut().enumerate() {
@@ -256,7 +269,18 @@ impl<'a, const K: usize> Counter<'a, K> {
                 let shift = DVec2::new(uniform(key), uniform(key + 1));
                 let lattice = Lattice::new(points_per_texel, self.map.texel_m, shift, half == 1);
                 points_per_texel = SECOND_HALF * lattice.points_per_texel(self.map.texel_m);
-                let tally = beam.trace(&lattice, counted, cancelled);
+                let tally = match sun.source {
+                    CountedSource::Sun(to_light) => Beam {
+                        ground,
+                        surface: &self.surface,
+                        to_light,
+                        ior,
+                        window: sun.window,
+                    }
+                    .trace(&lattice, counted, cancelled),
+                    CountedSource::Lamp(position_m) => Lamp::new(&self.surface, position_m, ior)
+                        .trace(&ground, &sun.window, &lattice, counted, cancelled),
+                };
                 self.add_irradiance(&tally, sun, irradiance);
                 match &mut both {
                     Some(both) => both.add(&tally),
@@ -274,11 +298,11 @@ impl<'a, const K: usize> Counter<'a, K> {
         }
     }
 
-    fn add_irradiance(&self, tally: &Tally<K>, sun: &CountedSun, irradiance: &mut [[f64; 3]]) {
+    fn add_irradiance(&self, tally: &Tally<K>, sun: &CountedLight, irradiance: &mut [[f64; 3]]) {
         let per_texel = 1.0 / (self.map.texel_m.x * self.map.texel_m.y);
         for (sum, counted) in irradiance.iter_mut().zip(&tally.texels) {
             for c in 0..3 {
-                sum[c] += counted[self.coefficient_of[c]] * per_texel * sun.irradiance_w_m2[c];
+                sum[c] += counted[self.coefficient_of[c]] * per_texel * sun.power[c];
             }
         }
     }
@@ -292,7 +316,7 @@ impl<'a, const K: usize> Counter<'a, K> {
         for (tally, sun) in round.tallies.iter().zip(&self.suns) {
             let weighed = |values: &[f64; K]| -> f64 {
                 (0..3)
-                    .map(|c| values[self.coefficient_of[c]] * sun.irradiance_w_m2[c])
+                    .map(|c| values[self.coefficient_of[c]] * sun.power[c])
                     .sum()
             };
             for (sum, (stopped, landed)) in stopped_landed
@@ -323,7 +347,7 @@ impl<'a, const K: usize> Counter<'a, K> {
             for c in 0..3 {
                 let k = self.coefficient_of[c];
                 // Both halves hold the whole window: each counts half.
-                let w = 0.5 * sun.irradiance_w_m2[c];
+                let w = 0.5 * sun.power[c];
                 let absorbed_part = if self.extinction_per_m[k] > 0.0 {
                     water.absorption_per_m[c] / self.extinction_per_m[k]
                 } else {

@@ -5,19 +5,19 @@
 //!
 //! - `truth`: one entry for every kind of output, and what it answers; `disk` keeps the answers;
 //! - `settings`: how long to count, and why a scene cannot be counted;
-//! - `checks`: figures that can be counted with, and the suns that count;
+//! - `checks`: figures that can be counted with, and the lights that count;
 //! - `place`: a scene in local coordinates, and where a ray meets the water;
 //! - `window`: the piece of water that can light a map;
 //! - `lattice`: where the rays start; `slanted`: the same in cells that fit a tilted receiver;
 //! - `refract`: many rays at once through the surface;
 //! - `occluders`: the triangles a ray meets;
 //! - floor maps: `floor`, the texels rays are counted in; `tally`, what a batch of rays brought, term by term; `trace`, one sun,
-//!   one lattice, all rays; `map`, rounds of ever finer lattices until the map is good enough;
+//!   one lattice, all rays; `lamp`, the same for a point light; `map`, rounds of ever finer lattices until the map is good enough;
 //! - maps on objects: `object_map`;
 //! - views: `camera`, the points that pixels show; `patch`, the light on one of them, searched from there; `view`, all of them;
 //! - `closed_form` and `paraboloid`: scenes with a formula instead of rays.
 //!
-//! Model: suns are points at infinity; waves do not shade each other and light that a surface reflects is not followed;
+//! Model: suns are points at infinity; point lights are counted in floor maps only; waves do not shade each other and light that a surface reflects is not followed;
 //! objects stop light under the water only, not on its way to the water; light that is refracted upwards is lost.
 
 mod camera;
@@ -25,6 +25,7 @@ mod checks;
 pub mod closed_form;
 mod disk;
 mod floor;
+mod lamp;
 mod lattice;
 mod map;
 mod object_map;

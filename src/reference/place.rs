@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::ReferenceError;
-use super::checks::{check_surface, check_water, suns};
+use super::checks::{check_surface, check_water, point_lights, suns};
 use super::occluders::Occluders;
 use crate::physics::refraction::{direction_to_light, refract_direction};
 use crate::physics::sky::sky_irradiance;
@@ -43,6 +43,9 @@ impl Place {
         let scene = &resolved.scene;
         check_water(&scene.water)?;
         let suns = suns(scene)?;
+        if !point_lights(scene)?.is_empty() {
+            return Err(ReferenceError::PointLight);
+        }
         let facts =
             SceneFacts::of(resolved).map_err(|error| ReferenceError::Scene(error.to_string()))?;
         check_surface(&facts.surface)?;

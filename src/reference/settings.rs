@@ -110,9 +110,9 @@ pub enum ReferenceError {
         /// Texels along z.
         height: u32,
     },
-    /// `output.light` does not name a sun.
+    /// `output.light` names neither a sun nor a point light.
     #[error(
-        "output.light is {index}, which is no sun; the scene has {lights} lights, counted from 0"
+        "output.light is {index}, which is no sun and no point light; the scene has {lights} lights, counted from 0"
     )]
     NotASun {
         /// What was asked for.
@@ -120,8 +120,13 @@ pub enum ReferenceError {
         /// Length of `lights`.
         lights: usize,
     },
+    /// Point lights in views and on objects are not counted.
+    #[error(
+        "the reference counts point lights in maps on the floor only; a view or a map on an object must have suns and skies alone"
+    )]
+    PointLight,
     /// Skies are not counted.
-    #[error("the reference counts suns only; output.include_sky must be false")]
+    #[error("the reference counts suns and point lights only; output.include_sky must be false")]
     IncludesSky,
     /// The list of meshes does not fit the list of objects.
     #[error("the scene has {objects} objects but {meshes} meshes were given")]

@@ -1,10 +1,10 @@
-//! One sun, one lattice, all rays.
+//! One lattice, all rays: rows in bands, what is under the water, and the rays of a sun.
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::floor::FloorMap;
-use super::lattice::Lattice;
+use super::lattice::{Lattice, Row};
 use super::occluders::Occluders;
 use super::refract::{BLOCK, Block, RowRefractor};
 use super::tally::{Tally, add_to, sum};
@@ -17,62 +17,43 @@ const MOST_BANDS: usize = 64;
 /// Memory for the bands' maps, bytes.
 const BAND_BYTES: usize = 256 << 20;
 
-/// What all rays of a sun have in common, in local coordinates.
-pub(super) struct Beam<'a, const K: usize> {
+/// What is under the water, in local coordinates.
+#[derive(Clone, Copy)]
+pub(super) struct Ground<'a, const K: usize> {
     pub(super) map: &'a FloorMap,
     pub(super) occluders: &'a Occluders,
-    pub(super) surface: &'a WaterSurface,
-    pub(super) to_light: DVec3,
-    pub(super) ior: f64,
     /// The different extinction coefficients, 1/m.
     pub(super) extinction_per_m: [f64; K],
-    pub(super) window: LightWindow,
 }
 
-impl<const K: usize> Beam<'_, K> {
-    /// Counts every ray of `lattice` in the window; `counted` hears how many rays were counted since it was last called. Once
-    /// `cancelled` says so, the rest is left out and the tally is of no use.
-    ///
-    /// The number of bands and the order of their sum depend on the map only, so the bits do not depend on the threads.
-    pub(super) fn trace(
+impl<const K: usize> Ground<'_, K> {
+    /// Counts the rows of `lattice` in `window` with `row`, which hears whether rows are left out because nobody waits; the number of
+    /// bands and the order of their sum depend on the map only, so the bits do not depend on the threads.
+    pub(super) fn count_rows(
         &self,
         lattice: &Lattice,
+        window: &LightWindow,
         counted: &(dyn Fn(u64) + Sync),
         cancelled: &(dyn Fn() -> bool + Sync),
+        count_row: &(dyn Fn(Row, &mut Tally<K>) + Sync),
     ) -> Tally<K> {
-        let (first, end) = lattice.rows(&self.window);
+        let (first, end) = lattice.rows(window);
         let rows = usize::try_from(end - first).unwrap_or(0);
         let maps = if self.occluders.is_empty() { 1 } else { 2 };
         let map_bytes = maps * self.map.len() * size_of::<[f64; K]>();
         let bands = (BAND_BYTES / map_bytes.max(1))
             .clamp(2, MOST_BANDS)
             .min(rows.max(1));
-        let refractor = RowRefractor::new(
-            self.surface,
-            lattice.step_m(),
-            self.to_light,
-            self.ior,
-            self.map.depth_m,
-        );
         let tallies: Vec<Tally<K>> = (0..bands)
             .into_par_iter()
             .map(|band| {
                 let mut tally = Tally::new(self.map, self.occluders.bounds.len());
-                let mut block = Block::new();
-                let mut stack = Vec::new();
                 for row in rows * band / bands..rows * (band + 1) / bands {
                     if cancelled() {
                         break;
                     }
-                    let row = lattice.row(first + row as i64, &self.window);
-                    let mut done = 0;
-                    while done < row.count {
-                        let start_m = row.start_m + lattice.step_m() * done as f64;
-                        let count = (row.count - done).min(BLOCK as u64) as usize;
-                        refractor.send(start_m, &mut block);
-                        self.count(start_m, lattice, &block, count, &mut stack, &mut tally);
-                        done += count as u64;
-                    }
+                    let row = lattice.row(first + row as i64, window);
+                    count_row(row, &mut tally);
                     tally.rays += row.count;
                 }
                 counted(tally.rays);
@@ -85,6 +66,87 @@ impl<const K: usize> Beam<'_, K> {
         }
         total.scale(lattice.area_per_point_m2());
         total
+    }
+
+    /// Books a ray with flux `entered` that goes from `from_m` to the floor's plane at `to_m`, `path_m` away.
+    #[inline]
+    pub(super) fn land(
+        &self,
+        entered: f64,
+        from_m: DVec3,
+        to_m: DVec3,
+        path_m: f64,
+        stack: &mut Vec<usize>,
+        tally: &mut Tally<K>,
+    ) {
+        let hit = if self.occluders.is_empty() {
+            None
+        } else {
+            self.occluders.first_hit(from_m, to_m, stack)
+        };
+        let length_m = path_m * hit.map_or(1.0, |hit| hit.fraction);
+        let mut arrived = [entered; K];
+        for (k, arrived) in arrived.iter_mut().enumerate() {
+            if self.extinction_per_m[k] > 0.0 {
+                *arrived = entered * transmission(self.extinction_per_m[k], length_m);
+                tally.lost[k] += entered - *arrived;
+            }
+        }
+        if let Some(hit) = hit {
+            add_to(&mut tally.objects[hit.object], &arrived);
+            if let Some(texel) = self.map.texel_at(to_m.x, to_m.z) {
+                let stopped = self
+                    .extinction_per_m
+                    .map(|c| entered * transmission(c, path_m));
+                add_to(&mut tally.shaded[texel], &stopped);
+            }
+        } else if let Some(texel) = self.map.texel_at(to_m.x, to_m.z) {
+            add_to(&mut tally.texels[texel], &arrived);
+        } else {
+            add_to(&mut tally.left, &arrived);
+        }
+    }
+}
+
+/// What all rays of a sun have in common, in local coordinates.
+pub(super) struct Beam<'a, const K: usize> {
+    pub(super) ground: Ground<'a, K>,
+    pub(super) surface: &'a WaterSurface,
+    pub(super) to_light: DVec3,
+    pub(super) ior: f64,
+    pub(super) window: LightWindow,
+}
+
+impl<const K: usize> Beam<'_, K> {
+    /// Counts every ray of `lattice` in the window; `counted` hears how many rays were counted since it was last called. Once
+    /// `cancelled` says so, the rest is left out and the tally is of no use.
+    pub(super) fn trace(
+        &self,
+        lattice: &Lattice,
+        counted: &(dyn Fn(u64) + Sync),
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Tally<K> {
+        let refractor = RowRefractor::new(
+            self.surface,
+            lattice.step_m(),
+            self.to_light,
+            self.ior,
+            self.ground.map.depth_m,
+        );
+        let count_row = |row: Row, tally: &mut Tally<K>| {
+            let mut block = Block::new();
+            let mut stack = Vec::new();
+            let mut done = 0;
+            while done < row.count {
+                let start_m = row.start_m + lattice.step_m() * done as f64;
+                let count = (row.count - done).min(BLOCK as u64) as usize;
+                refractor.send(start_m, &mut block);
+                self.count(start_m, lattice, &block, count, &mut stack, tally);
+                done += count as u64;
+            }
+        };
+        self.ground
+            .count_rows(lattice, &self.window, counted, cancelled, &count_row)
     }
 
     /// Books the first `count` rays of `block`.
@@ -106,35 +168,11 @@ impl<const K: usize> Beam<'_, K> {
                 tally.missed += entered;
                 continue;
             }
-            let hit = if self.occluders.is_empty() {
-                None
-            } else {
-                let top_m = start_m + lattice.step_m() * i as f64;
-                let from_m = DVec3::new(top_m.x, block.height_m[i], top_m.y);
-                let to_m = DVec3::new(x_m, -self.map.depth_m, z_m);
-                self.occluders.first_hit(from_m, to_m, stack)
-            };
-            let path_m = block.path_m[i] * hit.map_or(1.0, |hit| hit.fraction);
-            let mut arrived = [entered; K];
-            for (k, arrived) in arrived.iter_mut().enumerate() {
-                if self.extinction_per_m[k] > 0.0 {
-                    *arrived = entered * transmission(self.extinction_per_m[k], path_m);
-                    tally.lost[k] += entered - *arrived;
-                }
-            }
-            if let Some(hit) = hit {
-                add_to(&mut tally.objects[hit.object], &arrived);
-                if let Some(texel) = self.map.texel_at(x_m, z_m) {
-                    let stopped = self
-                        .extinction_per_m
-                        .map(|c| entered * transmission(c, block.path_m[i]));
-                    add_to(&mut tally.shaded[texel], &stopped);
-                }
-            } else if let Some(texel) = self.map.texel_at(x_m, z_m) {
-                add_to(&mut tally.texels[texel], &arrived);
-            } else {
-                add_to(&mut tally.left, &arrived);
-            }
+            let top_m = start_m + lattice.step_m() * i as f64;
+            let from_m = DVec3::new(top_m.x, block.height_m[i], top_m.y);
+            let to_m = DVec3::new(x_m, -self.ground.map.depth_m, z_m);
+            self.ground
+                .land(entered, from_m, to_m, block.path_m[i], stack, tally);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::physics::refraction::{normal_from_slope, refract_direction};
+use crate::physics::refraction::{direction_to_light, normal_from_slope, refract_direction};
 use crate::waves::WaterSurface;
 
 /// Directions in which the rim of the slopes is looked at.
@@ -87,6 +87,64 @@ pub(super) fn window_of(
     LightWindow {
         min_m: window.min_m - margin_m,
         max_m: window.max_m + margin_m,
+    }
+}
+
+/// Angles of incidence at which a point light's refraction is looked at, and directions they come from.
+const INCIDENCES: u32 = 32;
+const AZIMUTHS: u32 = 16;
+
+/// The water whose light from `position_m`, above it, can reach any of `targets`.
+///
+/// Under flat water every ray goes on away from the point under the light, so that what lands in a target has entered between the
+/// two; waves turn it aside by at most as much as they do at any incidence.
+pub(super) fn lamp_window(
+    surface: &WaterSurface,
+    position_m: DVec3,
+    ior: f64,
+    targets: &[Target],
+) -> LightWindow {
+    let mut aside: f64 = 0.0;
+    let mut farthest: f64 = 0.0;
+    for i in 0..=INCIDENCES {
+        let incidence = std::f64::consts::FRAC_PI_2 * f64::from(i) / f64::from(INCIDENCES) * 0.9999;
+        let azimuths = if surface.max_slope() > 0.0 {
+            AZIMUTHS
+        } else {
+            1
+        };
+        for j in 0..azimuths {
+            let azimuth = std::f64::consts::TAU * f64::from(j) / f64::from(azimuths);
+            let to_light = direction_to_light(std::f64::consts::FRAC_PI_2 - incidence, azimuth);
+            let offsets = offsets_per_depth(surface, to_light, ior);
+            // The first slope is none at all.
+            for offset in &offsets {
+                farthest = farthest.max(offset.length());
+                aside = aside.max((*offset - offsets[0]).length());
+            }
+        }
+    }
+    let crest_m = surface.max_height_m();
+    let foot_m = DVec2::new(position_m.x, position_m.z);
+    let mut between = LightWindow::empty();
+    let mut near = LightWindow::empty();
+    for target in targets.iter().filter(|t| t.min_m.y <= crest_m) {
+        let deep_m = (crest_m - target.min_m.y).max(0.0);
+        let corners = [
+            DVec2::new(target.min_m.x, target.min_m.z),
+            DVec2::new(target.max_m.x, target.max_m.z),
+        ];
+        for corner_m in corners {
+            for side in [DVec2::NEG_ONE, DVec2::ONE] {
+                near.include(corner_m + side * (1.02 * farthest * deep_m));
+                between.include(corner_m + side * (1.02 * aside * deep_m));
+                between.include(foot_m + side * (1.02 * aside * deep_m));
+            }
+        }
+    }
+    LightWindow {
+        min_m: between.min_m.max(near.min_m),
+        max_m: between.max_m.min(near.max_m),
     }
 }
 

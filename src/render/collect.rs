@@ -26,11 +26,11 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
         .enumerate()
     {
         let per_count = 1.0 / light::energy_scale(facts, index);
-        let grey = |t: usize| sun.irradiance_w_m2.map(|e| terms[t] as f64 * per_count * e);
+        let grey = |t: usize| sun.power.map(|p| terms[t] as f64 * per_count * p);
         let spectral = |t: usize| -> [f64; 3] {
             std::array::from_fn(|c| {
                 let channel = if facts.channels() == 1 { 0 } else { c };
-                terms[t + channel] as f64 * per_count * sun.irradiance_w_m2[c]
+                terms[t + channel] as f64 * per_count * sun.power[c]
             })
         };
         let lost = spectral(term::EXTINGUISHED);
@@ -83,8 +83,8 @@ fn torn_message(light: u32, terms: &[u64]) -> String {
     message
 }
 
-/// Flux of a sun under unit irradiance that is in no term of its raw account, m²; the largest of the channels.
-pub(super) fn missing_m2(facts: &SceneFacts, index: usize, terms: &[u64]) -> f64 {
+/// Flux of a light of unit power that is in no term of its raw account; the largest of the channels.
+pub(super) fn missing_flux(facts: &SceneFacts, index: usize, terms: &[u64]) -> f64 {
     let grey =
         terms[term::EMITTED] as f64 - terms[term::REFLECTED] as f64 - terms[term::MISSED] as f64;
     let missing = (0..facts.channels() as usize)

@@ -175,7 +175,7 @@ impl Renderer {
             account = readback::read(&self.gpu, energy, ACCOUNT_BYTES)?;
             time_ms.readback += ms_since(started);
             if !wide_sums
-                && light::has_wrapped(facts, index, collect::missing_m2(facts, index, &account))
+                && light::has_wrapped(facts, index, collect::missing_flux(facts, index, &account))
             {
                 self.wide_sum_reruns += 1;
                 continue;

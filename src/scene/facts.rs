@@ -5,32 +5,53 @@
 
 use glam::{DVec2, DVec3};
 
+use super::lamp_window;
 use super::placement::{LevelBox, ObjectFacts};
 use super::ranges::DEFAULT_MAP_SIDE;
+use super::source::{self, AirLight, Grid, Source};
 use super::window::{self, Rect, Region};
 use super::{
-    Camera, Issue, LayerName, Light, Output, Quality, Receiver, ResolvedScene, SceneError,
+    Camera, Issue, LayerName, Light, Output, Quality, Receiver, ResolvedScene, Scene, SceneError,
 };
-use crate::physics::{fresnel, refraction, sky};
+use crate::physics::{fresnel, sky};
 use crate::stats::Warning;
 use crate::waves::WaterSurface;
 
 /// Cells along the shortest wave below which caustics are washed out.
 const CELLS_PER_WAVE: f64 = 8.0;
+/// Water cells above the water within which a point light's rays spread too fast for the grid.
+const CLOSE_CELLS: f64 = 4.0;
 
-/// A sun that lights something under water.
+/// Most suns and point lights that the camera's pass has room for.
+pub const MOST_LIGHTS: usize = 64;
+
+/// A sun or point light that lights something under water.
 #[derive(Clone, Debug)]
 pub struct SunFacts {
     /// Index into `lights`.
     pub light: u32,
-    /// Unit direction to the sun.
-    pub to_light: DVec3,
-    /// Irradiance on a plane facing it, W/m².
-    pub irradiance_w_m2: [f64; 3],
-    /// The piece of water whose light can reach the receivers.
+    /// Where its light comes from.
+    pub source: Source,
+    /// Of a sun the irradiance of a plane facing it, W/m²; of a point light its radiant intensity, W/sr.
+    pub power: [f64; 3],
+    /// The piece of water whose light can reach the receivers, local (x, z); of a light under water its directions, as octahedral
+    /// places.
     pub window: Rect,
+    /// How the grid of rays lies in the window.
+    pub grid: Grid,
     /// Level map of each wet object, in the order of `SceneFacts::objects`; `None` for dry ones.
     pub boxes: Vec<Option<LevelBox>>,
+}
+
+impl SunFacts {
+    /// Side of a square of water in which all of `cells` × `cells` cells are as large as the largest one is, m; 0 of a light under
+    /// water, whose rays pass no surface.
+    pub fn span_m(&self, cells: u32) -> f64 {
+        match self.source {
+            Source::Submerged { .. } => 0.0,
+            _ => self.grid.widest_cell_m(cells) * f64::from(cells),
+        }
+    }
 }
 
 /// The floor.
@@ -98,10 +119,10 @@ pub struct SceneFacts {
     pub absorption_per_m: [f64; 3],
     /// Extinction c = a + b, 1/m.
     pub extinction_per_m: [f64; 3],
-    /// Suns that light a receiver under water.
+    /// Suns and point lights that light a receiver under water.
     pub suns: Vec<SunFacts>,
-    /// All suns above the horizon: unit direction and irradiance, W/m².
-    pub air_suns: Vec<(DVec3, [f64; 3])>,
+    /// All suns above the horizon and point lights above the water.
+    pub air_suns: Vec<AirLight>,
     /// Sum of the skies, W/(m² sr).
     pub sky_radiance: [f64; 3],
     /// Share of sky light that flat water lets through.
@@ -130,7 +151,8 @@ pub struct SceneFacts {
     pub map_sky_w_m2: [f64; 3],
     /// The dials.
     pub quality: Quality,
-    /// Radiance of a white dry horizontal surface under all lights, W/(m² sr).
+    /// Radiance of a white dry surface, W/(m² sr): horizontal under suns and skies, and under each point light facing it in the
+    /// middle of what is looked at, at the height of the floor (or of the water where there is none), 0.1 m away at least.
     pub white_radiance: f64,
     /// What is not simulated.
     pub warnings: Vec<Warning>,
@@ -145,7 +167,7 @@ impl SceneFacts {
         let water = &scene.water;
         let extinction_per_m =
             std::array::from_fn(|c| water.absorption_per_m[c] + water.scattering_per_m[c]);
-        let air_suns = air_suns(&scene.lights);
+        let air_suns = air_lights(&scene.lights, origin_m, &surface)?;
         let sky_radiance = sky_sum(&scene.lights);
         let floor = scene.floor.as_ref().map(|f| {
             let centre = DVec2::from(f.center_m) - DVec2::new(origin_m.x, origin_m.z);
@@ -165,7 +187,7 @@ impl SceneFacts {
             absorption_per_m: water.absorption_per_m,
             extinction_per_m,
             suns: Vec::new(),
-            white_radiance: white_radiance(&air_suns, sky_radiance),
+            white_radiance: white_radiance(scene, origin_m, &surface, sky_radiance),
             air_suns,
             sky_radiance,
             sky_transmittance: fresnel::diffuse_transmittance(water.ior),
@@ -304,42 +326,58 @@ impl SceneFacts {
         };
         for (index, light) in resolved.scene.lights.iter().enumerate() {
             let light_index = u32::try_from(index).unwrap_or(u32::MAX);
-            let Light::Sun(sun) = light else { continue };
-            if only.is_some_and(|wanted| wanted != light_index) || sun.elevation_deg <= 0.0 {
-                continue;
-            }
-            if sun.irradiance_w_m2.iter().all(|&e| e == 0.0) {
-                continue;
-            }
-            let to_light = refraction::direction_to_light(
-                sun.elevation_deg.to_radians(),
-                sun.azimuth_deg.to_radians(),
-            );
-            let Some(flat) = refraction::refract_direction(-to_light, DVec3::Y, self.ior) else {
+            let Some((source, power)) = Source::of(light, self.origin_m, &self.surface) else {
                 continue;
             };
+            if only.is_some_and(|wanted| wanted != light_index) || power.iter().all(|&e| e == 0.0) {
+                continue;
+            }
+            if let (Some(position_m), Some(floor)) = (source.position_m(), &self.floor)
+                && position_m.y <= floor.y_m
+            {
+                let mut warning = Warning::new(
+                    "light_under_floor",
+                    "the light is not above the floor and lights nothing",
+                );
+                warning.pointer = Some(format!("/lights/{index}"));
+                self.warnings.push(warning);
+                continue;
+            }
             let layers = self.quality.layers;
             let boxes: Vec<Option<LevelBox>> = self
                 .objects
                 .iter()
                 .zip(&resolved.meshes)
                 .map(|(object, mesh)| {
-                    object
+                    let flat = object
                         .wet
-                        .then(|| LevelBox::new(object, mesh, flat, layers))
+                        .then(|| source.direction_at(object.wet_middle(), self.ior))?;
+                    Some(LevelBox::new(object, mesh, flat?, layers))
                 })
                 .collect();
-            let window = window::light_window(self, to_light).ok_or_else(|| SceneError {
+            let window = match source {
+                Source::Sun { to_light } => window::light_window(self, to_light),
+                Source::Point { position_m } => {
+                    lamp_window::water_window(self, position_m, &window::receivers(self))
+                }
+                Source::Submerged { position_m } => {
+                    lamp_window::direction_window(position_m, &window::receivers(self))
+                }
+            };
+            let window = window.ok_or_else(|| SceneError {
                 issues: vec![Issue::invalid(
                     format!("/lights/{index}"),
                     "the refracted light cannot be followed to the receivers",
-                    "a sun whose light goes down into the water",
+                    "a light that goes down into the water",
                 )],
             })?;
+            let warnings = source::warnings(self, light_index, &source, power);
+            self.warnings.extend(warnings);
             self.suns.push(SunFacts {
                 light: light_index,
-                to_light,
-                irradiance_w_m2: sun.irradiance_w_m2,
+                source,
+                power,
+                grid: Grid::over(window, &source),
                 window,
                 boxes,
             });
@@ -360,7 +398,7 @@ impl SceneFacts {
         let widest_m = self
             .suns
             .iter()
-            .map(|sun| sun.window.size().max_element())
+            .map(|sun| sun.span_m(self.quality.water_cells))
             .fold(0.0, f64::max);
         let needed = (widest_m * CELLS_PER_WAVE / shortest_m).ceil();
         if needed > f64::from(self.quality.water_cells) {
@@ -404,13 +442,42 @@ impl SceneFacts {
         }
         self.warn_of_coarse_cells();
         for sun in &self.suns {
-            let steepest = self
-                .surface
-                .max_slope_along(DVec2::new(sun.to_light.x, sun.to_light.z).normalize_or_zero());
-            if steepest * DVec2::new(sun.to_light.x, sun.to_light.z).length() > sun.to_light.y {
+            let finest_m =
+                sun.grid.places.size().min_element() / f64::from(self.quality.water_cells);
+            if let Source::Point { position_m } = sun.source
+                && position_m.y < CLOSE_CELLS * finest_m
+            {
+                let mut warning = Warning::new(
+                    "light_close_to_water",
+                    format!(
+                        "the light is {:.1e} m above the water at rest, less than {CLOSE_CELLS} of the smallest water cells of {finest_m:.1e} m: where its light goes is coarse",
+                        position_m.y
+                    ),
+                );
+                warning.pointer = Some(format!("/lights/{}", sun.light));
+                self.warnings.push(warning);
+            }
+            let looks_away = match sun.source {
+                Source::Sun { to_light } => {
+                    let sideways = DVec2::new(to_light.x, to_light.z);
+                    self.surface.max_slope_along(sideways.normalize_or_zero()) * sideways.length()
+                        > to_light.y
+                }
+                Source::Point { position_m } => {
+                    let foot_m = DVec2::new(position_m.x, position_m.z);
+                    let farthest_m = (sun.window.min - foot_m)
+                        .abs()
+                        .max((sun.window.max - foot_m).abs())
+                        .length();
+                    self.surface.max_slope() * farthest_m
+                        > position_m.y - self.surface.max_height_m()
+                }
+                Source::Submerged { .. } => false,
+            };
+            if looks_away && self.surface.max_slope() > 0.0 {
                 let mut warning = Warning::new(
                     "waves_shade_waves",
-                    "some wave slopes look away from the sun; the shadows of waves on waves are not simulated",
+                    "some wave slopes look away from the light; the shadows of waves on waves are not simulated",
                 );
                 warning.pointer = Some(format!("/lights/{}", sun.light));
                 self.warnings.push(warning);
@@ -458,20 +525,27 @@ fn geometry_bytes(resolved: &ResolvedScene) -> u64 {
     distinct.values().sum()
 }
 
-fn air_suns(lights: &[Light]) -> Vec<(DVec3, [f64; 3])> {
-    lights
+fn air_lights(
+    lights: &[Light],
+    origin_m: DVec3,
+    surface: &WaterSurface,
+) -> Result<Vec<AirLight>, SceneError> {
+    let all: Vec<AirLight> = lights
         .iter()
-        .filter_map(|light| match light {
-            Light::Sun(sun) if sun.elevation_deg > 0.0 => Some((
-                refraction::direction_to_light(
-                    sun.elevation_deg.to_radians(),
-                    sun.azimuth_deg.to_radians(),
-                ),
-                sun.irradiance_w_m2,
-            )),
-            _ => None,
-        })
-        .collect()
+        .filter_map(|light| Source::of(light, origin_m, surface))
+        .filter(|(source, _)| !matches!(source, Source::Submerged { .. }))
+        .map(|(source, power)| AirLight { source, power })
+        .collect();
+    if all.len() > MOST_LIGHTS {
+        return Err(SceneError {
+            issues: vec![Issue::invalid(
+                "/lights".to_owned(),
+                format!("{} suns and point lights shine in the air", all.len()),
+                format!("at most {MOST_LIGHTS}"),
+            )],
+        });
+    }
+    Ok(all)
 }
 
 fn sky_sum(lights: &[Light]) -> [f64; 3] {
@@ -486,10 +560,26 @@ fn sky_sum(lights: &[Light]) -> [f64; 3] {
     sum
 }
 
-fn white_radiance(suns: &[(DVec3, [f64; 3])], sky_radiance: [f64; 3]) -> f64 {
+fn white_radiance(
+    scene: &Scene,
+    origin_m: DVec3,
+    surface: &WaterSurface,
+    sky_radiance: [f64; 3],
+) -> f64 {
     let mean = |rgb: [f64; 3]| rgb.iter().sum::<f64>() / 3.0;
-    let sun: f64 = suns.iter().map(|(to_light, e)| to_light.y * mean(*e)).sum();
-    sun / std::f64::consts::PI + mean(sky_radiance)
+    let floor_y_m = scene.floor.as_ref().map(|floor| -floor.depth_m);
+    let lit: f64 = scene
+        .lights
+        .iter()
+        .filter_map(|light| Source::of(light, origin_m, surface))
+        .map(|(source, power)| match source {
+            Source::Sun { to_light } => to_light.y * mean(power),
+            Source::Point { position_m } | Source::Submerged { position_m } => {
+                source::facing_w_m2(position_m, floor_y_m, mean(power))
+            }
+        })
+        .sum();
+    lit / std::f64::consts::PI + mean(sky_radiance)
 }
 
 fn camera_facts(camera: &Camera, origin_m: DVec3, width: u32, height: u32) -> CameraFacts {

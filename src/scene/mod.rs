@@ -1,6 +1,7 @@
 //! The scene: what a request may say (`types`, `quality`), how JSON becomes it (`json` reads text, `strict` reads values, `parse` puts
 //! them together), what is refused (`ranges`, `validate`, `validate_output`), how single fields are replaced from outside
-//! (`overrides`), how mesh ids become meshes (`resolve`), and the figures everything downstream is decided from (`facts`).
+//! (`overrides`), how mesh ids become meshes (`resolve`), and the figures everything downstream is decided from (`facts`; `source`: where
+//! light comes from; `window` and `lamp_window`: through which water).
 //!
 //! To add a field: put it into `types` with unit, range and default in its doc comment, its range into `ranges`, check it in
 //! `validate`, and run the tests, which tell where `openapi.yaml` has to follow.
@@ -10,6 +11,7 @@ pub mod error;
 pub mod facts;
 mod findings;
 pub mod json;
+mod lamp_window;
 mod names;
 pub mod overrides;
 pub mod parse;
@@ -18,6 +20,7 @@ mod pointer;
 pub mod quality;
 pub mod ranges;
 pub mod resolve;
+pub mod source;
 mod strict;
 pub mod types;
 pub mod validate;

@@ -1,9 +1,10 @@
 //! What field names tell: their unit, and which field a misspelt one was meant to be.
 
 /// Suffix of a field name and the unit it stands for; longer suffixes first.
-const UNITS: [(&str, &str); 8] = [
+const UNITS: [(&str, &str); 9] = [
     ("_w_m2_sr", "W/(m² sr)"),
     ("_w_m2", "W/m²"),
+    ("_w_sr", "W/sr"),
     ("_per_m", "1/m"),
     ("_deg", "degrees"),
     ("_ev", "stops"),

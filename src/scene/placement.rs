@@ -24,6 +24,16 @@ pub struct ObjectFacts {
     pub map_texels: u32,
 }
 
+impl ObjectFacts {
+    /// Middle of what of the bounds lies under the water at rest; of their lower side where nothing does.
+    pub fn wet_middle(&self) -> DVec3 {
+        let top_m = self.max.y.min(0.0).max(self.min.y);
+        let mut middle = (self.min + self.max) * 0.5;
+        middle.y = 0.5 * (self.min.y + top_m);
+        middle
+    }
+}
+
 impl ResolvedScene {
     /// The objects around the local origin `origin_m`, under waves of at most `max_height_m`.
     pub fn placed_objects(&self, origin_m: DVec3, max_height_m: f64) -> Vec<ObjectFacts> {

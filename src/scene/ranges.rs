@@ -71,6 +71,8 @@ pub const ALBEDO: Range = Range::new(0.0, 1.0, "");
 pub const ELEVATION: Range = Range::new(-90.0, 90.0, "degrees");
 /// `irradiance_w_m2`.
 pub const IRRADIANCE: Range = Range::new(0.0, 1e9, "W/m²");
+/// `intensity_w_sr`.
+pub const INTENSITY: Range = Range::new(0.0, 1e9, "W/sr");
 /// `radiance_w_m2_sr`.
 pub const RADIANCE: Range = Range::new(0.0, 1e9, "W/(m² sr)");
 /// `scale`.

@@ -21,7 +21,7 @@ pub struct Scene {
     /// The rectangular floor under the water; absent: bottomless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floor: Option<Floor>,
-    /// Suns and skies; may be empty (a black picture).
+    /// Suns, point lights and skies; may be empty (a black picture).
     #[serde(default)]
     pub lights: Vec<Light>,
     /// Mesh instances.
@@ -153,6 +153,8 @@ fn default_floor_albedo() -> [f64; 3] {
 pub enum Light {
     /// `kind = "sun"`.
     Sun(Sun),
+    /// `kind = "point"`.
+    Point(PointLight),
     /// `kind = "sky"`.
     Sky(Sky),
 }
@@ -162,9 +164,10 @@ impl<'de> Deserialize<'de> for Light {
         tagged(
             deserializer,
             None,
-            &["sun", "sky"],
+            &["sun", "point", "sky"],
             |kind, value| match kind {
                 "sun" => inner(value).map(Self::Sun),
+                "point" => inner(value).map(Self::Point),
                 _ => inner(value).map(Self::Sky),
             },
         )
@@ -185,6 +188,21 @@ pub struct Sun {
     /// Irradiance per channel on a plane facing the sun, W/m², 0 … 10⁹.
     #[schema(min_items = 3, max_items = 3)]
     pub irradiance_w_m2: [f64; 3],
+}
+
+/// A point that sends light out evenly all around, above or under the water.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointLight {
+    /// Always `point`.
+    pub kind: PointKind,
+    /// Where it is, m, −10⁶ … 10⁶ each. Whether that is above or under the water is decided by the waves at the moment `time_s`;
+    /// of one under the water the light that goes up to the surface is not followed.
+    #[schema(min_items = 3, max_items = 3)]
+    pub position_m: [f64; 3],
+    /// Radiant intensity per channel, W/sr, 0 … 10⁹ (4π times that is the power, W).
+    #[schema(min_items = 3, max_items = 3)]
+    pub intensity_w_sr: [f64; 3],
 }
 
 /// A uniform sky over the whole upper hemisphere.
@@ -520,7 +538,7 @@ pub struct IrradianceMapOutput {
     )]
     #[schema(minimum = 1, maximum = 8192)]
     pub height: Option<u32>,
-    /// Index into `lights` of the only sun to count; needed on a mesh when there are several suns. Default: all.
+    /// Index into `lights` of the only sun or point light to count; needed on a mesh when there are several. Default: all.
     #[serde(
         default,
         deserialize_with = "optional_integer::<LightIndex, _>",
@@ -664,6 +682,7 @@ kinds! {
     FloorWord = "floor",
     SineKind = "sine",
     SunKind = "sun",
+    PointKind = "point",
     SkyKind = "sky",
     PerspectiveKind = "perspective",
     OrthographicKind = "orthographic",

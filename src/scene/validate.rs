@@ -100,6 +100,12 @@ fn lights(findings: &mut Findings, lights: &[Light], limits: &Limits) {
                 let pointer = at("irradiance_w_m2");
                 findings.numbers(&pointer, &sun.irradiance_w_m2, &ranges::IRRADIANCE);
             }
+            Light::Point(point) => {
+                let position = at("position_m");
+                findings.numbers(&position, &point.position_m, &ranges::COORDINATE);
+                let intensity = at("intensity_w_sr");
+                findings.numbers(&intensity, &point.intensity_w_sr, &ranges::INTENSITY);
+            }
             Light::Sky(sky) => {
                 let pointer = at("radiance_w_m2_sr");
                 findings.numbers(&pointer, &sky.radiance_w_m2_sr, &ranges::RADIANCE);

@@ -80,27 +80,30 @@ fn pixels(findings: &mut Findings, pointer: &str, [width, height]: [u32; 2], lim
     }
 }
 
-/// Indices of the suns, in words.
-fn suns_of(scene: &Scene) -> (usize, String) {
-    let suns: Vec<String> = scene
+/// Number and indices, in words, of the lights that have maps: suns and point lights.
+fn mapped_lights(scene: &Scene) -> (usize, String) {
+    let mapped: Vec<String> = scene
         .lights
         .iter()
         .enumerate()
-        .filter(|(_, light)| matches!(light, Light::Sun(_)))
+        .filter(|(_, light)| matches!(light, Light::Sun(_) | Light::Point(_)))
         .map(|(index, _)| index.to_string())
         .collect();
-    let accepted = match suns.len() {
-        0 => "no index: the scene has no sun".to_owned(),
-        _ => format!("the index of a sun: {}", quoted(&suns.join(", "))),
+    let accepted = match mapped.len() {
+        0 => "no index: the scene has no sun and no point light".to_owned(),
+        _ => format!(
+            "the index of a sun or point light: {}",
+            quoted(&mapped.join(", "))
+        ),
     };
-    (suns.len(), accepted)
+    (mapped.len(), accepted)
 }
 
 fn light(findings: &mut Findings, scene: &Scene, output: &IrradianceMapOutput) {
-    let (sun_count, accepted) = suns_of(scene);
+    let (light_count, accepted) = mapped_lights(scene);
     match (output.light, output.receiver) {
         (Some(index), _) => match scene.lights.get(index as usize) {
-            Some(Light::Sun(_)) => {}
+            Some(Light::Sun(_) | Light::Point(_)) => {}
             Some(Light::Sky(_)) => {
                 let detail = format!("light {index} is a sky");
                 findings.invalid("/output/light", detail, accepted);
@@ -110,10 +113,10 @@ fn light(findings: &mut Findings, scene: &Scene, output: &IrradianceMapOutput) {
                 findings.invalid("/output/light", detail, accepted);
             }
         },
-        (None, Receiver::Object(_)) if sun_count > 1 => findings.invalid(
+        (None, Receiver::Object(_)) if light_count > 1 => findings.invalid(
             "/output/light",
             format!(
-                "missing field `light`: each of the {sun_count} suns has its own map on a mesh"
+                "missing field `light`: each of the {light_count} suns and point lights has its own map on a mesh"
             ),
             accepted,
         ),

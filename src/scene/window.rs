@@ -27,12 +27,67 @@ impl Rect {
         self.max - self.min
     }
 
-    fn including(self, other: Self) -> Self {
+    pub(super) fn including(self, other: Self) -> Self {
         Self {
             min: self.min.min(other.min),
             max: self.max.max(other.max),
         }
     }
+
+    pub(super) fn grown(self, by: f64) -> Self {
+        Self {
+            min: self.min - by,
+            max: self.max + by,
+        }
+    }
+}
+
+/// The bounds of something that light may have to reach, local, m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lit {
+    pub(super) min: DVec3,
+    pub(super) max: DVec3,
+}
+
+impl Lit {
+    pub(super) fn rect(&self) -> Rect {
+        Rect {
+            min: DVec2::new(self.min.x, self.min.z),
+            max: DVec2::new(self.max.x, self.max.z),
+        }
+    }
+
+    /// Least and greatest depth under waves of `height_m`.
+    pub(super) fn depths_m(&self, height_m: f64) -> [f64; 2] {
+        [
+            (-self.max.y - height_m).max(0.0),
+            (-self.min.y + height_m).max(0.0),
+        ]
+    }
+}
+
+/// What the output wants lit under water: the floor's map and wet objects.
+pub(super) fn receivers(facts: &SceneFacts) -> Vec<Lit> {
+    let mut all = Vec::new();
+    if let (Some(map), Some(floor)) = (&facts.floor_map, &facts.floor) {
+        all.push(Lit {
+            min: DVec3::new(map.rect.min.x, floor.y_m, map.rect.min.y),
+            max: DVec3::new(map.rect.max.x, floor.y_m, map.rect.max.y),
+        });
+    }
+    let receives = |index: usize| match facts.map_receiver {
+        None => true,
+        Some(super::Receiver::Object(wanted)) => wanted as usize == index,
+        Some(super::Receiver::Floor(_)) => false,
+    };
+    for index in facts.wet_objects().filter(|&index| receives(index)) {
+        let object = &facts.objects[index];
+        all.push(Lit {
+            min: object.min,
+            max: object.max,
+        });
+    }
+    all
 }
 
 /// A part of the floor.
@@ -94,41 +149,12 @@ pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
     let drift = drift(facts, -to_light)?;
     let height = facts.surface.max_height_m();
     let mut window: Option<Rect> = None;
-    let mut add = |rect: Rect| window = Some(window.map_or(rect, |w: Rect| w.including(rect)));
-    if let (Some(map), Some(floor)) = (&facts.floor_map, &facts.floor) {
-        add(entry(
-            map.rect,
-            &drift,
-            -floor.y_m - height,
-            -floor.y_m + height,
-        ));
+    for lit in receivers(facts) {
+        let rect = entry(lit.rect(), &drift, -lit.max.y - height, -lit.min.y + height);
+        window = Some(window.map_or(rect, |w| w.including(rect)));
     }
-    let receives = |index: usize| match facts.map_receiver {
-        None => true,
-        Some(super::Receiver::Object(wanted)) => wanted as usize == index,
-        Some(super::Receiver::Floor(_)) => false,
-    };
-    for index in facts.wet_objects().filter(|&index| receives(index)) {
-        let object = &facts.objects[index];
-        let rect = Rect {
-            min: DVec2::new(object.min.x, object.min.z),
-            max: DVec2::new(object.max.x, object.max.z),
-        };
-        add(entry(
-            rect,
-            &drift,
-            -object.max.y - height,
-            -object.min.y + height,
-        ));
-    }
-    window.map(|w| {
-        // A margin against rounding at the rim, so that no texel at the edge misses a sliver.
-        let margin = DVec2::splat(1e-5 * w.size().max_element().max(1e-6));
-        Rect {
-            min: w.min - margin,
-            max: w.max + margin,
-        }
-    })
+    // A margin against rounding at the rim, so that no texel at the edge misses a sliver.
+    window.map(|w| w.grown(1e-5 * w.size().max_element().max(1e-6)))
 }
 
 /// The part of the floor that a camera can see, through waves and all.

@@ -80,7 +80,7 @@ fn edges(facts: &SceneFacts) -> f64 {
     let side_m = facts
         .suns
         .iter()
-        .map(|sun| sun.window.size().max_element())
+        .map(|sun| sun.span_m(facts.quality.water_cells))
         .fold(0.0, f64::max);
     if side_m > 0.0 { around_m / side_m } else { 0.0 }
 }

@@ -18,6 +18,7 @@ mod image_exr;
 mod image_metadata;
 mod image_png;
 mod image_support;
+mod lamps;
 mod level_map_cache;
 mod mesh_hierarchy;
 mod mesh_obj;

@@ -24,7 +24,7 @@ pub(crate) fn resolved(json: &str) -> ResolvedScene {
 pub(crate) fn sun_mut(scene: &mut Scene) -> &mut Sun {
     match &mut scene.lights[0] {
         Light::Sun(sun) => sun,
-        Light::Sky(_) => panic!("the first light is the sun"),
+        Light::Point(_) | Light::Sky(_) => panic!("the first light is the sun"),
     }
 }
 

@@ -65,7 +65,7 @@ fn maps_of_a_mesh_name_an_object_and_nothing_of_the_floor() {
 }
 
 #[test]
-fn the_light_of_a_map_is_a_sun() {
+fn the_light_of_a_map_is_a_sun_or_a_point_light() {
     assert_eq!(
         findings(&map_scene(json!({ "receiver": "floor", "light": 0 }))),
         []
@@ -79,7 +79,11 @@ fn the_light_of_a_map_is_a_sun() {
         &map_scene(json!({ "receiver": "floor", "light": 2 })),
         "/output/light",
     );
-    assert_eq!(issue.accepted, "the index of a sun: 0");
+    assert_eq!(issue.accepted, "the index of a sun or point light: 0");
+    let mut scene = map_scene(json!({ "receiver": "floor", "light": 2 }));
+    let lamp = json!({ "kind": "point", "position_m": [0, 1, 0], "intensity_w_sr": [1, 1, 1] });
+    scene["lights"].as_array_mut().unwrap().push(lamp);
+    assert_eq!(findings(&scene), []);
 }
 
 #[test]
@@ -88,7 +92,7 @@ fn a_mesh_under_several_suns_needs_to_know_which() {
     let sun = scene["lights"][0].clone();
     scene["lights"].as_array_mut().unwrap().push(sun);
     let issue = only(&scene, "/output/light");
-    assert_eq!(issue.accepted, "the index of a sun: 0, 2");
+    assert_eq!(issue.accepted, "the index of a sun or point light: 0, 2");
     scene["output"]["light"] = json!(2);
     assert_eq!(findings(&scene), []);
     scene["output"] = json!({ "kind": "irradiance_map", "receiver": "floor" });

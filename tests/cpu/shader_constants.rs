@@ -1,11 +1,10 @@
 //! Figures that stand in Rust and in WGSL are the same, and dispatches cover their work.
 
 use caustica::gpu::shader::Module;
-use caustica::passes::camera_irradiance::MAX_SUNS;
 use caustica::passes::desc::Run;
 use caustica::passes::maps::MapLayout;
 use caustica::passes::{self, Groups, PassDesc, Repeat, Work, landed, level_map, slot, term};
-use caustica::scene::facts::SceneFacts;
+use caustica::scene::facts::{MOST_LIGHTS, SceneFacts};
 use serde_json::json;
 use wgpu::naga::{self, Expression, Literal, TypeInner};
 
@@ -85,8 +84,8 @@ fn figures_of_queues_and_maps_agree() {
     agrees("SPLIT_HEAD", slot::SPLIT_HEAD_WORDS as f64);
     agrees("EMPTY_DEPTH", level_map::EMPTY_DEPTH);
     let camera = module("passes/camera_irradiance.wgsl");
-    assert_eq!(array_length(&camera, "suns"), MAX_SUNS);
-    assert!(caustica::config::Limits::default().max_lights <= MAX_SUNS);
+    assert_eq!(array_length(&camera, "suns"), MOST_LIGHTS);
+    assert!(caustica::config::Limits::default().max_lights <= MOST_LIGHTS);
     let landed_module = module("passes/landed.wgsl");
     let each = constant(&landed_module, "TEXELS_EACH").unwrap() as u32;
     let side = array_length(&landed_module, "sums") as u32;

@@ -80,7 +80,7 @@ fn find(scene: &ResolvedScene, target_error: f64) -> Truth {
 fn sun(scene: &ResolvedScene, index: usize) -> Sun {
     match &scene.scene.lights[index] {
         Light::Sun(sun) => sun.clone(),
-        Light::Sky(_) => panic!("a sun"),
+        Light::Point(_) | Light::Sky(_) => panic!("a sun"),
     }
 }
 

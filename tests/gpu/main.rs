@@ -24,6 +24,7 @@ mod harness;
 mod instances;
 #[path = "../support/instances.rs"]
 mod instances_scene;
+mod lamps;
 mod layers;
 mod level_maps;
 mod level_maps_service;

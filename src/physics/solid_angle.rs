@@ -1,0 +1,21 @@
+//! Solid angles of triangles: the light of a point goes out evenly over them.
+
+use glam::DVec3;
+
+/// Angle of the point (x, y) against the x axis, rad, −π … π; 0 at the origin.
+pub fn point_angle(y: f64, x: f64) -> f64 {
+    y.atan2(x)
+}
+
+/// Solid angle of the triangle with corners `a`, `a + ab`, `a + ac`, seen from the origin, sr, −2π … 2π.
+///
+/// tan(Ω/2) = a·(b × c) / (abc + (a·b)c + (a·c)b + (b·c)a); above 0 where `ab` × `ac` looks away from the origin. Source: Van Oosterom &
+/// Strackee, IEEE Transactions on Biomedical Engineering 30, 1983, eq. 8. The triple product is that of a, ab and ac, which
+/// is the same and keeps the last digits of small triangles.
+pub fn solid_angle(a: DVec3, ab: DVec3, ac: DVec3) -> f64 {
+    let (b, c) = (a + ab, a + ac);
+    let (a_m, b_m, c_m) = (a.length(), b.length(), c.length());
+    let triple = a.dot(ab.cross(ac));
+    let sum = a_m * b_m * c_m + a.dot(b) * c_m + a.dot(c) * b_m + b.dot(c) * a_m;
+    2.0 * point_angle(triple, sum)
+}

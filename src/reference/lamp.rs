@@ -1,0 +1,124 @@
+//! One point light, one lattice, all rays: each has a direction and a weight of its own.
+//!
+//! Above the water the lattice lies on the water and a ray stands for I cos θ dA / r² of the light; under it the lattice lies on the
+//! floor's plane, so that every ray is on its way to the map and only meshes can stop it.
+
+use glam::{DVec2, DVec3};
+
+use super::lattice::{Lattice, Row};
+use super::tally::Tally;
+use super::trace::Ground;
+use super::window::{LightWindow, Target, lamp_window};
+use crate::physics::fresnel::{fresnel_reflectance, fresnel_transmittance};
+use crate::physics::refraction::refract_direction;
+use crate::waves::{WaterSurface, normal};
+
+/// A point light in local coordinates.
+pub(super) struct Lamp<'a> {
+    surface: &'a WaterSurface,
+    position_m: DVec3,
+    ior: f64,
+    submerged: bool,
+}
+
+impl<'a> Lamp<'a> {
+    pub(super) fn new(surface: &'a WaterSurface, position_m: DVec3, ior: f64) -> Self {
+        let water_m = surface.at(position_m.x, position_m.z).height_m;
+        Self {
+            surface,
+            position_m,
+            ior,
+            submerged: position_m.y <= water_m,
+        }
+    }
+
+    /// What the lattice covers: the water whose light can reach `targets`, the first of which is the map; for a light under water
+    /// the map itself.
+    pub(super) fn window(&self, targets: &[Target]) -> LightWindow {
+        if self.submerged {
+            let map = targets.first();
+            return LightWindow {
+                min_m: map.map_or(DVec2::ZERO, |m| DVec2::new(m.min_m.x, m.min_m.z)),
+                max_m: map.map_or(DVec2::ZERO, |m| DVec2::new(m.max_m.x, m.max_m.z)),
+            };
+        }
+        lamp_window(self.surface, self.position_m, self.ior, targets)
+    }
+
+    /// Counts every ray of `lattice` in `window`, per W/sr of the light.
+    pub(super) fn trace<const K: usize>(
+        &self,
+        ground: &Ground<'_, K>,
+        window: &LightWindow,
+        lattice: &Lattice,
+        counted: &(dyn Fn(u64) + Sync),
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Tally<K> {
+        let count_row = |row: Row, tally: &mut Tally<K>| {
+            let mut stack = Vec::new();
+            for i in 0..row.count {
+                let place_m = row.start_m + lattice.step_m() * i as f64;
+                if self.submerged {
+                    self.shine(ground, place_m, &mut stack, tally);
+                } else {
+                    self.refract(ground, place_m, &mut stack, tally);
+                }
+            }
+        };
+        ground.count_rows(lattice, window, counted, cancelled, &count_row)
+    }
+
+    /// A ray straight to a place of the floor.
+    fn shine<const K: usize>(
+        &self,
+        ground: &Ground<'_, K>,
+        place_m: DVec2,
+        stack: &mut Vec<usize>,
+        tally: &mut Tally<K>,
+    ) {
+        let to_m = DVec3::new(place_m.x, -ground.map.depth_m, place_m.y);
+        let path_m = (to_m - self.position_m).length();
+        let down_m = self.position_m.y - to_m.y;
+        if down_m <= 0.0 || path_m == 0.0 {
+            return; // the floor does not face it
+        }
+        let flux = down_m / path_m.powi(3);
+        tally.emitted += flux;
+        ground.land(flux, self.position_m, to_m, path_m, stack, tally);
+    }
+
+    /// A ray through a place of the water.
+    fn refract<const K: usize>(
+        &self,
+        ground: &Ground<'_, K>,
+        place_m: DVec2,
+        stack: &mut Vec<usize>,
+        tally: &mut Tally<K>,
+    ) {
+        let water = self.surface.at(place_m.x, place_m.y);
+        let n = normal(water);
+        let from_m = DVec3::new(place_m.x, water.height_m, place_m.y);
+        let way_m = self.position_m - from_m;
+        let distance2 = way_m.length_squared();
+        let to_light = way_m / distance2.sqrt();
+        let cos_i = n.dot(to_light);
+        // Not above 0 either where the light is on the water itself.
+        if cos_i.is_nan() || cos_i <= 0.0 {
+            return;
+        }
+        let flux = cos_i / (n.y * distance2);
+        tally.emitted += flux;
+        tally.reflected += flux * fresnel_reflectance(cos_i, self.ior);
+        let entered = flux * fresnel_transmittance(cos_i, self.ior);
+        let above_floor_m = from_m.y + ground.map.depth_m;
+        match refract_direction(-to_light, n, self.ior) {
+            Some(ray) if ray.y < -1e-9 && above_floor_m >= 0.0 => {
+                let path_m = above_floor_m / -ray.y;
+                let to_m = from_m + ray * path_m;
+                let to_m = to_m.with_y(-ground.map.depth_m);
+                ground.land(entered, from_m, to_m, path_m, stack, tally);
+            }
+            _ => tally.missed += entered,
+        }
+    }
+}
