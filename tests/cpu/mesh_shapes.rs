@@ -256,7 +256,7 @@ fn triangles_range_from_ten_to_three_hundred_thousand() {
         assert!(found >= wanted, "{found} from {least}");
     }
     assert_eq!(with(290_000, 310_000), 1);
-    // The sphere and the dolphin of Tipprasert's Table 5-2.
+    // The sphere and the dolphin of Tipprasert (2006), Table 5-2.
     assert_eq!(Shape::named("sphere").unwrap().triangles, 1_984);
     assert_eq!(Shape::named("dolphin").unwrap().triangles, 4_442);
 }

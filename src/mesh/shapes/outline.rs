@@ -48,7 +48,7 @@ impl Outline {
         self
     }
 
-    /// Moved by `by_m`.
+    /// Moved by so much.
     pub(super) fn moved(self, x_m: f64, y_m: f64, z_m: f64) -> Self {
         self.map(|p| p + DVec3::new(x_m, y_m, z_m))
     }

@@ -117,6 +117,7 @@ fn rings(profile: &[(f64, f64)], segments: u32) -> Vec<Vec<DVec3>> {
     profile.iter().filter(|p| p.0 > 0.0).map(ring).collect()
 }
 
+/// As many triangles as the sphere of Tipprasert (2006), Table 5-2.
 fn sphere() -> Outline {
     let profile: Vec<_> = (0..=32)
         .map(|k| {

@@ -1,4 +1,5 @@
-//! Fish and their like: a body of elliptical sections along x, nose first, with fins that start inside it.
+//! Fish and their like: a body of elliptical sections along x, nose first, with fins that start inside it. The dolphin has as
+//! many triangles as that of Tipprasert (2006), Table 5-2.
 
 use glam::DVec3;
 
