@@ -21,6 +21,7 @@ mod image_support;
 mod level_map_cache;
 mod mesh_hierarchy;
 mod mesh_obj;
+mod mesh_shapes;
 mod mesh_store;
 mod metrics;
 mod mutants;
