@@ -5,6 +5,7 @@
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
 #import "lib/attenuation.wgsl"
+#import "lib/slicing.wgsl"
 #import "lib/coverage.wgsl"
 #import "shared/light.wgsl"
 #import "shared/water_surface.wgsl"
@@ -13,8 +14,10 @@
 #import "shared/level_maps.wgsl"
 #import "shared/normals.wgsl"
 #import "shared/geometry.wgsl"
+#import "shared/reference_planes.wgsl"
 #import "shared/trace_light.wgsl"
 #import "shared/flux.wgsl"
+#import "shared/deposit_share.wgsl"
 #import "shared/footprint.wgsl"
 #import "shared/beam_triangle.wgsl"
 #import "shared/grid.wgsl"
@@ -134,7 +137,7 @@ fn halve(beam_index: u32, path: u32, is_last: bool) {
         let own = c[i % 3u];
         points[i] = corner_at(select(own, (sum - own) * 0.5, i >= 3u));
     }
-    let one_piece = !is_whole_beam && is_smooth(&points);
+    let one_piece = !PLANES && !is_whole_beam && is_smooth(&points);
     for (var k = 0u; k < select(4u, 1u, is_whole_beam); k++) {
         let b = part_of(&points, k);
         let straddles = !one_piece && !is_whole(b);

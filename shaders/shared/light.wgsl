@@ -34,6 +34,9 @@ fn vertex_m(ij: vec2f) -> vec2f {
 // Whether any light is lost on its way; without it no exponential is computed.
 override ATTENUATES: bool = true;
 
+// Whether meshes get their light by reference planes instead of by hits: rays then only tell what is left for the floor.
+override PLANES: bool = false;
+
 // Flux into a triangle of water under unit irradiance, m²: its area as the sun sees it; 0 where it looks away.
 fn triangle_flux_m2(a: vec3f, b: vec3f, c: vec3f) -> f32 {
     return max(0.5 * dot(cross(c - a, b - a), light.to_light.xyz), 0.0);

@@ -61,9 +61,16 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
 
 /// Counts per m² in the energy account of a sun; a power of two, so that scaling is exact.
 pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
+    // A beam may light texels of each plane.
+    let times = if places_by_planes(facts) {
+        f64::from(facts.quality.planes)
+    } else {
+        1.0
+    };
     let all_m2 = largest_beam_m2(facts, &facts.suns[index])
         * 2.0
-        * f64::from(facts.quality.water_cells).powi(2);
+        * f64::from(facts.quality.water_cells).powi(2)
+        * times;
     (2.0_f64.powi(60) / all_m2).log2().floor().exp2()
 }
 
@@ -93,9 +100,18 @@ fn texel_fluxes_m2(facts: &SceneFacts, index: usize) -> impl Iterator<Item = f64
         .chain(objects.map(|b| 1.0 / b.density_per_flux))
 }
 
+/// Whether meshes get their light by planes.
+pub fn places_by_planes(facts: &SceneFacts) -> bool {
+    facts.quality.has_planes() && facts.wet_objects().next().is_some()
+}
+
 /// Whether narrow sums would be too coarse for a sun from the start: very many beams on a texel, texels under a beam, or beams
 /// in very small parts.
 pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
+    // What planes land is not what rays take away: a sum that has wrapped would not be told from that.
+    if places_by_planes(facts) {
+        return true;
+    }
     let scale = flux_scale(facts, index, false);
     let coarsest_m2 = texel_fluxes_m2(facts, index).fold(0.0, f64::max);
     let finest_m2 = texel_fluxes_m2(facts, index).fold(f64::INFINITY, f64::min);
@@ -143,6 +159,11 @@ pub fn receivers(
             density_per_flux: level_box.density_per_flux as f32,
             axis: vec4(level_box.axis, 0.0),
             s_per_m: level_box.s_per_m as f32,
+            planes: if facts.quality.has_planes() {
+                facts.quality.planes
+            } else {
+                0
+            },
             ..Receiver::default()
         };
         all.extend((0..layers).map(|layer| Receiver {

@@ -13,4 +13,5 @@ pub mod fresnel;
 pub mod refraction;
 pub mod registry;
 pub mod sky;
+pub mod slicing;
 pub mod turns;

@@ -6,6 +6,7 @@ mod commands;
 mod executor;
 mod geometry;
 mod self_check;
+mod slices;
 mod tune;
 
 use std::collections::BTreeMap;
@@ -75,8 +76,8 @@ impl From<plan::PlanError> for RenderError {
 /// Idle polls (one a second) after which buffers kept for the next frame are given up.
 const IDLE_POLLS: u32 = 5;
 
-/// Pass, entry point, whether it attenuates, whether its flux sums are wide.
-type KernelKey = (&'static str, &'static str, bool, bool);
+/// Pass, entry point, whether it attenuates, whether its flux sums are wide, whether meshes get their light by planes.
+type KernelKey = (&'static str, &'static str, bool, bool, bool);
 
 /// Owns the GPU context and the caches; lives on the GPU thread.
 #[derive(Debug)]
@@ -87,6 +88,7 @@ pub struct Renderer {
     timing: Timing,
     kernels: BTreeMap<KernelKey, Kernel>,
     raster_kernels: BTreeMap<bool, RasterKernel>,
+    slice_kernel: Option<RasterKernel>,
     level_maps: LevelMapCache,
     arena: Option<wgpu::Buffer>,
     geometry: Option<geometry::Geometry>,
@@ -124,6 +126,7 @@ impl Renderer {
             pool: BufferPool::default(),
             kernels: BTreeMap::new(),
             raster_kernels: BTreeMap::new(),
+            slice_kernel: None,
             level_maps: LevelMapCache::new(arena_bytes),
             arena: None,
             geometry: None,
@@ -215,6 +218,7 @@ impl Renderer {
                 level_maps: cache_change(&cache_before, &self.level_maps.stats()),
             },
             energy: run.energy,
+            planes: run.planes,
             accuracy: run.accuracy,
             exposure: exposure(&facts, resolved),
             warnings: plan.warnings,
@@ -314,7 +318,8 @@ impl Renderer {
             .max_storage_buffer_binding_size
             .min(self.gpu.limits.max_buffer_size);
         for slot in &plan.slots {
-            if slot.bytes > limit {
+            // Slices are textures, each by itself small.
+            if slot.bytes > limit && slot.name != slot_name(Slot::Slices) {
                 return Err(RenderError::OverBudget {
                     what: format!(
                         "buffer `{}` (the device's limit for one binding)",
@@ -350,6 +355,7 @@ struct RunResult {
     height: u32,
     layers: BTreeMap<crate::scene::LayerName, crate::frame::Layer>,
     energy: Vec<crate::stats::EnergyAccount>,
+    planes: Vec<crate::stats::PlaneStats>,
     accuracy: Option<AccuracyStats>,
     warnings: Vec<Warning>,
     time_ms: TimeStats,

@@ -129,6 +129,8 @@ integers! {
     MapTexels = 16..=4096;
     /// `quality.layers`.
     Layers = 1..=4;
+    /// `quality.planes`.
+    Planes = 2..=1024;
     /// `quality.split_levels`.
     SplitLevels = 0..=8;
     /// `quality.pixel_samples`.

@@ -22,6 +22,7 @@ mod footprint;
 mod formulas;
 mod harness;
 mod memory;
+mod planes;
 mod planted;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
