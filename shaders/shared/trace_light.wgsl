@@ -37,6 +37,7 @@ fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> H
     if r.level_count == 0u { return nothing; }
     let o = to_map(r, origin);
     let d = direction_to_map(r, direction);
+    if PLANES { return trace_planes(r, number, o, d, t_max); }
     let t = march_level_map(r, o, d, 0.0, t_max);
     if t == AT_EDGE {
         let met = trace_instance(index, origin, direction, 0.0, t_max);

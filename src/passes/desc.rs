@@ -66,6 +66,8 @@ pub enum Groups {
     Direct([u32; 3]),
     /// As many as the head of this queue says.
     Queue(Slot),
+    /// As many as this queue says from this word on.
+    QueueAt(Slot, u32),
 }
 
 /// What a step does.
@@ -86,6 +88,22 @@ pub enum Work {
         layer: u32,
         /// Workgroups.
         groups: [u32; 3],
+    },
+    /// Draws what lies nearest to a plane into that plane's slice image.
+    DrawSlice {
+        /// Which plane.
+        plane: u32,
+        /// Texels along each side of the image.
+        texels: u32,
+        /// Vertices.
+        vertices: u32,
+    },
+    /// A compute dispatch that reads a plane's slice image.
+    OverSlice {
+        /// Workgroups.
+        groups: [u32; 3],
+        /// Which plane.
+        plane: u32,
     },
 }
 

@@ -131,9 +131,16 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
 
 /// Counts per unit flux in the energy account of a light; a power of two, so that scaling is exact.
 pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
+    // A beam may light texels of each plane.
+    let times = if places_by_planes(facts) {
+        f64::from(facts.quality.planes)
+    } else {
+        1.0
+    };
     let all = largest_beam(facts, &facts.suns[index])
         * 2.0
-        * f64::from(facts.quality.water_cells).powi(2);
+        * f64::from(facts.quality.water_cells).powi(2)
+        * times;
     (2.0_f64.powi(60) / all).log2().floor().exp2()
 }
 
@@ -219,9 +226,18 @@ fn lamp_on_floor(sun: &SunFacts, rect: &Rect, y_m: f64, ior: f64, texels: f64) -
     }
 }
 
+/// Whether meshes get their light by planes.
+pub fn places_by_planes(facts: &SceneFacts) -> bool {
+    facts.quality.has_planes() && facts.wet_objects().next().is_some()
+}
+
 /// Whether narrow sums would be too coarse for a light from the start: very many beams on a texel, texels under a beam, or beams
 /// in very small parts.
 pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
+    // What planes land is not what rays take away: a sum that has wrapped would not be told from that.
+    if places_by_planes(facts) {
+        return true;
+    }
     let scale = flux_scale(facts, index, false);
     let means = || texel_fluxes(facts, index).map(|t| t.mean);
     let coarsest = means().fold(0.0, f64::max);
@@ -275,6 +291,11 @@ pub fn receivers(
             density_per_flux: level_box.density_per_flux as f32,
             axis: vec4(level_box.axis, 0.0),
             s_per_m: level_box.s_per_m as f32,
+            planes: if facts.quality.has_planes() {
+                facts.quality.planes
+            } else {
+                0
+            },
             ..Receiver::default()
         };
         all.extend((0..layers).map(|layer| Receiver {

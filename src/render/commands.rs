@@ -1,10 +1,12 @@
 //! Dispatches, draws and submissions.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use super::buffers::{DrawTargets, FrameBuffers};
 use super::{Renderer, ms_since, slot_name};
 use crate::gpu::kernel::RasterTargets;
+use crate::gpu::shader::Access;
 use crate::gpu::{Binding, GpuError, Kernel, RasterKernel};
 use crate::passes::desc::{Groups, PassDesc, Run, Step, Surface, Work};
 use crate::passes::level_map::EMPTY_DEPTH;
@@ -95,7 +97,7 @@ impl Renderer {
                     &step,
                     (groups, wide_sums),
                     buffers,
-                    targets.map(|targets| (targets, 0)),
+                    &|name| targets.and_then(|t| t.by_name(name, 0)),
                 )?,
                 Work::StoreLayer { layer, groups } => self.dispatch(
                     encoder,
@@ -104,8 +106,22 @@ impl Renderer {
                     &step,
                     (Groups::Direct(groups), wide_sums),
                     buffers,
-                    targets.map(|targets| (targets, layer)),
+                    &|name| targets.and_then(|t| t.by_name(name, layer)),
                 )?,
+                Work::OverSlice { groups, plane } => self.dispatch(
+                    encoder,
+                    pass,
+                    facts,
+                    &step,
+                    (Groups::Direct(groups), wide_sums),
+                    buffers,
+                    &|name| (name == "slice").then(|| buffers.slice(plane)).flatten(),
+                )?,
+                Work::DrawSlice {
+                    plane,
+                    texels,
+                    vertices,
+                } => self.draw_slice(encoder, pass, &step, (plane, texels, vertices), buffers)?,
                 Work::DrawLevelMap { surface, vertices } => {
                     if let Some(targets) = targets {
                         let drawn = (surface, vertices);
@@ -129,35 +145,50 @@ impl Renderer {
         step: &Step,
         (groups, wide_sums): (Groups, bool),
         buffers: &FrameBuffers,
-        targets: Option<(&DrawTargets, u32)>,
+        texture: &dyn Fn(&str) -> Option<wgpu::TextureView>,
     ) -> Result<(), GpuError> {
-        let key = (pass.name, step.entry, facts.attenuates(), wide_sums);
+        let by_planes = facts.quality.has_planes();
+        let key = (
+            pass.name,
+            step.entry,
+            facts.attenuates(),
+            wide_sums,
+            by_planes,
+        );
         if !self.kernels.contains_key(&key) {
             let path = format!("passes/{}.wgsl", pass.name);
             let switch = |on: bool| f64::from(u8::from(on));
             let constants = [
                 ("ATTENUATES", switch(facts.attenuates())),
                 ("WIDE_SUMS", switch(wide_sums)),
+                ("PLANES", switch(by_planes)),
             ];
             let kernel = Kernel::new(&self.gpu, &self.sources, &path, step.entry, &constants)?;
             self.kernels.insert(key, kernel);
         }
         let kernel = &self.kernels[&key];
         let uniforms = self.uniform_buffers(step);
-        let group = kernel.bind(&self.gpu, |name| match name {
-            "front_depth" => targets.map(|(t, _)| Binding::Texture(&t.front)),
-            "back_depth" => targets.map(|(t, _)| Binding::Texture(&t.back)),
-            "front_normal" => targets.map(|(t, _)| Binding::Texture(&t.normal)),
-            "layer_depth" => targets.and_then(|(t, layer)| further(t, layer, 0)),
-            "layer_normal" => targets.and_then(|(t, layer)| further(t, layer, 1)),
-            _ => Some(Binding::Buffer(
+        let textures: BTreeMap<&str, wgpu::TextureView> = kernel
+            .bindings()
+            .iter()
+            .filter(|bound| matches!(bound.access, Access::Texture(_)))
+            .filter_map(|bound| Some((bound.name.as_str(), texture(&bound.name)?)))
+            .collect();
+        let group = kernel.bind(&self.gpu, |name| match textures.get(name) {
+            Some(view) => Some(Binding::Texture(view)),
+            None => Some(Binding::Buffer(
                 uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
             )),
         })?;
-        if let Groups::Queue(slot) = groups {
+        let queue = match groups {
+            Groups::Direct(_) => None,
+            Groups::Queue(slot) => Some((slot, 0)),
+            Groups::QueueAt(slot, word) => Some((slot, word)),
+        };
+        if let Some((slot, word)) = queue {
             encoder.copy_buffer_to_buffer(
                 buffers.get(slot_name(slot)),
-                0,
+                4 * u64::from(word),
                 &buffers.indirect,
                 0,
                 12,
@@ -178,7 +209,9 @@ impl Renderer {
         compute.set_bind_group(0, &group, &[]);
         match groups {
             Groups::Direct([x, y, z]) => compute.dispatch_workgroups(x, y, z),
-            Groups::Queue(_) => compute.dispatch_workgroups_indirect(&buffers.indirect, 0),
+            Groups::Queue(_) | Groups::QueueAt(..) => {
+                compute.dispatch_workgroups_indirect(&buffers.indirect, 0);
+            }
         }
         Ok(())
     }

@@ -33,7 +33,12 @@ impl Renderer {
         let buffers = self.prepare(resolved, facts, plan)?;
         let result = self.run_passes(facts, plan, missing, &buffers, cancel);
         let targets = missing.iter().map(slot::draw_target_bytes).max();
+        let slices = plan
+            .slots
+            .iter()
+            .find(|s| s.name == slot_name(Slot::Slices));
         let peak_bytes = self.pool.peak_bytes()
+            + slices.map_or(0, |planned| planned.bytes)
             + targets.unwrap_or(0)
             + self.gpu.take_readback_peak()
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
@@ -43,6 +48,7 @@ impl Renderer {
             empty,
             queue_heads,
             indirect,
+            slices: _,
         } = buffers;
         for (name, buffer) in by_name {
             if name != slot_name(Slot::Geometry) && name != slot_name(Slot::LevelMaps) {
@@ -82,6 +88,7 @@ impl Renderer {
             self.build_level_maps(facts, &passes, missing, buffers, cancel, &mut time_ms)?;
         }
         let mut accounts = Vec::new();
+        let mut plane_counts: Vec<Vec<[u32; 4]>> = Vec::new();
         for sun in 0..if of(Repeat::Sun).is_empty() {
             0
         } else {
@@ -89,6 +96,10 @@ impl Renderer {
         } {
             check_cancelled(cancel)?;
             accounts.extend(self.run_sun(facts, sun, &of(Repeat::Sun), buffers, &mut time_ms)?);
+            if let Some(buffer) = buffers.by_name.get(slot_name(Slot::PlaneCounts)) {
+                let bytes = Slot::PlaneCounts.bytes(facts);
+                plane_counts.push(readback::read(&self.gpu, buffer, bytes)?);
+            }
         }
         let (energy, warnings) = collect::energy(facts, &accounts);
         let estimate = of(Repeat::Frame);
@@ -108,6 +119,7 @@ impl Renderer {
             height: 0,
             layers: BTreeMap::new(),
             energy,
+            planes: collect::planes(facts, &plane_counts),
             accuracy,
             warnings,
             time_ms,

@@ -6,6 +6,7 @@ mod commands;
 mod executor;
 mod geometry;
 mod self_check;
+mod slices;
 mod tune;
 mod warm;
 
@@ -76,8 +77,8 @@ impl From<plan::PlanError> for RenderError {
 /// Idle polls (one a second) after which buffers kept for the next frame are given up.
 const IDLE_POLLS: u32 = 5;
 
-/// Pass, entry point, whether it attenuates, whether its flux sums are wide.
-type KernelKey = (&'static str, &'static str, bool, bool);
+/// Pass, entry point, whether it attenuates, whether its flux sums are wide, whether meshes get their light by planes.
+type KernelKey = (&'static str, &'static str, bool, bool, bool);
 
 /// Fragment entry point, and whether the farthest fragment stays instead of the nearest.
 type RasterKey = (&'static str, bool);
@@ -91,6 +92,7 @@ pub struct Renderer {
     timing: Timing,
     kernels: BTreeMap<KernelKey, Kernel>,
     raster_kernels: BTreeMap<RasterKey, RasterKernel>,
+    slice_kernel: Option<RasterKernel>,
     level_maps: LevelMapCache,
     arena: Option<wgpu::Buffer>,
     geometry: Option<geometry::Geometry>,
@@ -134,6 +136,7 @@ impl Renderer {
             pool: BufferPool::default(),
             kernels: BTreeMap::new(),
             raster_kernels: BTreeMap::new(),
+            slice_kernel: None,
             level_maps: LevelMapCache::new(arena_bytes),
             arena: None,
             geometry: None,
@@ -229,6 +232,7 @@ impl Renderer {
                 level_maps: cache_change(&cache_before, &self.level_maps.stats()),
             },
             energy: run.energy,
+            planes: run.planes,
             accuracy: run.accuracy,
             exposure: exposure(&facts, resolved),
             warnings: plan.warnings,
@@ -338,7 +342,8 @@ impl Renderer {
         }
         let limit = bindable_bytes(&self.gpu);
         for slot in &plan.slots {
-            if slot.bytes > limit {
+            // Slices are textures, each by itself small.
+            if slot.bytes > limit && slot.name != slot_name(Slot::Slices) {
                 return Err(RenderError::OverBudget {
                     what: format!(
                         "buffer `{}` (the device's limit for one binding{})",
@@ -386,6 +391,7 @@ struct RunResult {
     height: u32,
     layers: BTreeMap<crate::scene::LayerName, crate::frame::Layer>,
     energy: Vec<crate::stats::EnergyAccount>,
+    planes: Vec<crate::stats::PlaneStats>,
     accuracy: Option<AccuracyStats>,
     warnings: Vec<Warning>,
     time_ms: TimeStats,

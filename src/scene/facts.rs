@@ -414,6 +414,30 @@ impl SceneFacts {
         }
     }
 
+    /// Says what placement by planes leaves out.
+    fn warn_of_planes(&mut self) {
+        let wet = self.wet_objects().count();
+        if !self.quality.has_planes() || self.suns.is_empty() {
+            return;
+        }
+        if wet > 1 {
+            let mut warning = Warning::new(
+                "planes_ignore_other_objects",
+                "planes know nothing of other objects: what one object stops lights the others all the same",
+            );
+            warning.pointer = Some("/quality/placement".to_owned());
+            self.warnings.push(warning);
+        }
+        if wet > 0 && self.quality.layers > 1 {
+            let mut warning = Warning::new(
+                "planes_light_the_first_layer",
+                "planes light what the light direction sees first; further layers stay dark",
+            );
+            warning.pointer = Some("/quality/layers".to_owned());
+            self.warnings.push(warning);
+        }
+    }
+
     fn collect_warnings(&mut self, scattering_per_m: &[f64; 3]) {
         if scattering_per_m.iter().any(|&b| b > 0.0) {
             let mut warning = Warning::new(
@@ -440,6 +464,7 @@ impl SceneFacts {
                 self.warnings.push(warning);
             }
         }
+        self.warn_of_planes();
         self.warn_of_coarse_cells();
         for sun in &self.suns {
             let finest_m =

@@ -28,6 +28,6 @@ mod validate_output;
 pub mod window;
 
 pub use error::{Issue, IssueKind, SceneError};
-pub use quality::{Method, Placement, Quality};
+pub use quality::{Method, Placement, Quality, Slicing};
 pub use resolve::{ResolvedScene, resolve};
 pub use types::*;

@@ -22,6 +22,8 @@ pub struct ObjectFacts {
     pub wet: bool,
     /// Texels along each side of its level maps and irradiance maps.
     pub map_texels: u32,
+    /// Triangles of the mesh.
+    pub triangles: u32,
 }
 
 impl ObjectFacts {
@@ -57,6 +59,7 @@ impl ResolvedScene {
                     mesh: mesh.id.clone(),
                     wet: min.y < max_height_m,
                     map_texels: self.scene.quality.level_map_texels,
+                    triangles: u32::try_from(mesh.triangles.len()).unwrap_or(u32::MAX),
                 }
             })
             .collect()

@@ -158,7 +158,7 @@ fn every_object_has_the_measure_of_its_own_map() {
         .iter()
         .map(|light| match light {
             Light::Sun(sun) => flat_water_irradiance(&resolved.scene.water, 0.5, sun)[0],
-            Light::Sky(_) => 0.0,
+            Light::Point(_) | Light::Sky(_) => 0.0,
         })
         .sum();
     let frame = harness::render(&resolved);

@@ -29,6 +29,7 @@ mod layers;
 mod level_maps;
 mod level_maps_service;
 mod memory;
+mod planes;
 mod planted;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
