@@ -46,6 +46,7 @@
 //! | [`render`] | runs plans; self-check |
 //! | [`reference`] | float64 truth by plain rays: another algorithm, not a port |
 //! | [`accuracy`] | error of images, dials and their sweeps, plots and reports |
+//! | [`experiment`] | published experiments done again |
 //! | [`tuning`] | from a wanted error or time to dials |
 //! | [`image`] | PNG, EXR, tone curve |
 //! | [`jobs`] | bounded queue and the one GPU thread |
@@ -58,6 +59,7 @@
 pub mod accuracy;
 pub mod cli;
 pub mod config;
+pub mod experiment;
 pub mod frame;
 pub mod gpu;
 pub mod http;

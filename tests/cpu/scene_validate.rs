@@ -427,7 +427,7 @@ fn dials_are_not_chosen_for_planes() {
             json!({ "placement": "planes" }),
             json!({ "method": "volumetric" }),
         ] {
-            let mut scene = map_scene(json!({}));
+            let mut scene = map_scene(json!({ "receiver": 0 }));
             scene["quality"] = way;
             assert_eq!(findings(&scene), []);
             scene["quality"][wish] = value.clone();
