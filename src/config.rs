@@ -59,6 +59,18 @@ pub struct RenderConfig {
     pub truth_cache: Option<std::path::PathBuf>,
 }
 
+impl RenderConfig {
+    /// GPU memory one frame may hold, bytes.
+    pub fn memory_budget_bytes(&self) -> u64 {
+        self.memory_budget_mib.saturating_mul(1 << 20)
+    }
+
+    /// GPU memory for cached level maps, bytes; a device that cannot bind so much at once gets less.
+    pub fn level_map_budget_bytes(&self) -> u64 {
+        self.level_map_budget_mib.saturating_mul(1 << 20)
+    }
+}
+
 /// Reads `--calibration`.
 fn calibration(text: &str) -> Result<Calibration, String> {
     Calibration::load(std::path::Path::new(text)).map_err(|error| error.to_string())

@@ -38,7 +38,7 @@
 //! | [`scene`] | what a request may say, and the facts drawn from it |
 //! | [`physics`] | formulas in f64, each with its source; twins in `shaders/lib`, tied by [`physics::registry`] |
 //! | [`waves`] | wave models |
-//! | [`mesh`] | OBJ in, repair report, ray hierarchy, store |
+//! | [`mesh`] | OBJ in, repair report, ray hierarchy, store; shapes from formulas |
 //! | [`plan`] | which passes, and why; knows nothing of wgpu |
 //! | [`passes`] | one file per pass, and the table of what flows between them |
 //! | [`gpu`] | device, shaders, buffers, timing; knows nothing of water |

@@ -22,6 +22,9 @@ pub struct Stats {
     pub memory: MemoryStats,
     /// One account per light that shines into or under the water.
     pub energy: Vec<EnergyAccount>,
+    /// One entry per sun and object that got its light by planes; absent otherwise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub planes: Vec<PlaneStats>,
     /// How near the truth it is thought to be; absent unless `quality` asks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<AccuracyStats>,
@@ -137,6 +140,25 @@ pub struct EnergyAccount {
     pub missed_w: [f64; 3],
     /// |emitted − all the rest| / emitted, the largest of the channels; 0 when nothing is emitted.
     pub closure: f64,
+}
+
+/// What placing light on an object by planes took.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PlaneStats {
+    /// Index into `lights`.
+    pub light: u32,
+    /// Index into `objects`.
+    pub object: u32,
+    /// Planes that were asked for.
+    pub specified: u32,
+    /// Planes that were used.
+    pub used: u32,
+    /// Pieces of the object's box that hold them.
+    pub sub_boxes: u32,
+    /// Beams that go under water.
+    pub beams: u32,
+    /// Beams that may reach the object, which are cut with its planes.
+    pub beams_kept: u32,
 }
 
 /// How near the truth a frame is thought to be, and which dials were chosen for that.

@@ -3,12 +3,13 @@
 //! `cargo bench --bench caustica -- --quick` is the short form. Every figure is the median of several warm runs with the
 //! smallest and the largest beside it, since other work on the machine shows first in the largest.
 //!
-//! `frames` measures rendering, `accuracy` what a frame's estimate of its error costs, `files` encoding, `service` HTTP; `spread` sums up runs, `memory` asks the system, `report`
-//! writes the table.
+//! `frames` measures rendering, `instances` many objects, `accuracy` what a frame's estimate of its error costs, `files` encoding,
+//! `service` HTTP; `spread` sums up runs, `memory` asks the system, `report` writes the table.
 
 mod accuracy;
 mod files;
 mod frames;
+mod instances;
 mod memory;
 mod report;
 mod service;
@@ -90,6 +91,7 @@ fn run(effort: Effort, quick: bool) -> Result<(), Box<dyn Error>> {
     let pool = frames::teapot_pool(&mut Renderer::new(&RenderConfig::default())?, effort)?;
     report.tables.push(sines.table);
     report.tables.push(pool.table);
+    report.tables.push(instances::instances(effort)?);
     let mut renderer = Renderer::new(&RenderConfig::default())?;
     report
         .tables

@@ -12,6 +12,9 @@ struct AirLight {
     power: vec4f,  // irradiance of a plane facing the sun, W/m²; intensity of the point light, W/sr
 }
 
+// Least |cosine| between surface and map axis that is reckoned with: below it a surface shows the axis nothing.
+const LEAST_COSINE: f32 = 1e-6;
+
 // Receivers of all suns, sun by sun.
 @group(0) @binding(3) var<storage, read> all_receivers: array<Receiver>;
 @group(0) @binding(12) var<storage, read> irradiance: array<f32>;
@@ -37,11 +40,16 @@ fn floor_irradiance(r: Receiver, uv: vec2f) -> vec3f {
     return mix(near, far, f.y);
 }
 
-// An object's map: texels whose front lies at the point's own depth count, so what is hidden from the light stays dark and
-// silhouettes take nothing from beside them.
-fn object_irradiance(r: Receiver, p: vec3f, normal: vec3f) -> vec3f {
-    let cosine = -dot(normal, r.axis.xyz);
-    if cosine <= 0.0 { return vec3f(0.0); }
+// An object's maps, one per layer from receiver `first` on: texels of the layer that lies at the point's own depth count, so what is
+// hidden from the light stays dark and silhouettes take nothing from beside them. What faces away from the axis is lit by tilted
+// rays alone, and is no first surface: it is looked up in the further layers. The steeper it stands, the less of its light one
+// texel knows: beyond 8 texels of depth per texel neighbours are no longer asked.
+fn object_irradiance(first: u32, p: vec3f, normal: vec3f) -> vec3f {
+    let r = all_receivers[first];
+    let towards = -dot(normal, r.axis.xyz);
+    let nearest_layer = select(0u, 1u, towards <= 0.0);
+    if nearest_layer >= view.layers { return vec3f(0.0); }
+    let cosine = max(abs(towards), LEAST_COSINE);
     let m = to_map(r, p);
     let base = floor(m.xy - 0.5);
     let f = m.xy - 0.5 - base;
@@ -51,10 +59,18 @@ fn object_irradiance(r: Receiver, p: vec3f, normal: vec3f) -> vec3f {
     for (var i = 0; i < 4; i++) {
         let corner = vec2i(i & 1, i >> 1);
         let texel = vec2i(base) + corner;
-        let front = level_map_depths(r.level_map_offset, r.map_width, 0u, texel).x;
-        if abs(front - m.z) > bias { continue; }
+        var layer = nearest_layer;
+        var gap = abs(layer_depth(r, layer, texel) - m.z);
+        for (var k = nearest_layer + 1u; k < view.layers; k++) {
+            let other = abs(layer_depth(r, k, texel) - m.z);
+            if other < gap {
+                gap = other;
+                layer = k;
+            }
+        }
+        if gap > bias { continue; }
         let weight = max(select(1.0 - f.x, f.x, corner.x == 1) * select(1.0 - f.y, f.y, corner.y == 1), 1e-4);
-        sum += weight * texel_value(r.irradiance_offset, r.map_width, vec2u(texel));
+        sum += weight * texel_value(all_receivers[first + layer].irradiance_offset, r.map_width, vec2u(texel));
         weights += weight;
     }
     if weights == 0.0 { return vec3f(0.0); }
@@ -109,8 +125,7 @@ fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
                     if any(uv < vec2f(0.0)) || any(uv > vec2f(f32(r.map_width), f32(r.map_height))) { outside = 1.0; }
                     sum += floor_irradiance(r, uv);
                 } else {
-                    let r = all_receivers[s * per_sun + 1u + u32(receiver - 1) * view.layers];
-                    sum += object_irradiance(r, p, normal);
+                    sum += object_irradiance(s * per_sun + 1u + u32(receiver - 1) * view.layers, p, normal);
                 }
             }
             for (var c = 0; c < 3; c++) {

@@ -2,6 +2,8 @@
 #import "lib/attenuation.wgsl"
 #import "shared/light.wgsl"
 #import "shared/flux.wgsl"
+#import "shared/receivers.wgsl"
+#import "shared/floor_distance.wgsl"
 #import "shared/resolve.wgsl"
 
 @group(0) @binding(12) var<storage, read_write> coarse_irradiance: array<f32>;

@@ -7,10 +7,13 @@
 #import "shared/receivers.wgsl"
 #import "shared/floor_distance.wgsl"
 #import "shared/flux.wgsl"
+#import "shared/deposit_share.wgsl"
 #import "shared/footprint.wgsl"
+#import "shared/wide_footprint.wgsl"
 #import "shared/beam_triangle.wgsl"
 #import "shared/unit_flux.wgsl"
 #import "shared/grid.wgsl"
+#import "shared/grid_rays.wgsl"
 #import "shared/grid_beam.wgsl"
 #import "shared/account.wgsl"
 #import "shared/queue.wgsl"
@@ -62,6 +65,8 @@ fn deposit_beam(cell: vec2u, half: u32) -> CellSums {
         sums.losses.missed = b.transmitted;
         return sums;
     }
+    // By planes meshes get their light in another pass.
+    if PLANES && b.receiver.x > FLOOR { return sums; }
     sums.losses.extinguished = b.transmitted * mean_extinction(b.t);
     let target_map = target_of(receivers[b.receiver.x]);
     let box = texel_box(target_map, b.uv[0], b.uv[1], b.uv[2]);
@@ -104,36 +109,6 @@ fn deposit_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     flush_account(invocation);
 }
 
-// Deposits texels `first`, `first + stride` … of a wide footprint's box; returns the share beside the map. Each texel is counted
-// from itself: over a long edge no digits are lost.
-fn deposit_texels(target_map: Target, b: Beam, arriving: vec3f, first: u32, stride: u32) -> f32 {
-    let size = vec2i(target_map.width, target_map.height);
-    let box = texel_box(target_map, b.uv[0], b.uv[1], b.uv[2]);
-    let extent = box.last - box.first + 1;
-    let count = u32(extent.x) * u32(extent.y);
-    let e1 = b.uv[1] - b.uv[0];
-    let e2 = b.uv[2] - b.uv[0];
-    let per_area = 2.0 / (e1.x * e2.y - e1.y * e2.x);
-    var beside = 0.0;
-    for (var i = first; i < count; i += stride) {
-        let texel = box.first + vec2i(i32(i) % extent.x, i32(i) / extent.x);
-        // Everything is counted from the texel: neighbouring beams then round alike and leave no seam.
-        let base = vec2f(texel);
-        let p = b.uv[0] - base;
-        let q = b.uv[1] - base;
-        let s = b.uv[2] - base;
-        let low = min(p, min(q, s));
-        let high = max(p, max(q, s));
-        let row = cell_bounds(texel.y, size.y, base.y, low.y, high.y);
-        let column = cell_bounds(texel.x, size.x, base.x, low.x, high.x);
-        let edges = clip_to_row(p, q, s, row.x, row.y);
-        if column.y < row_low(edges) || column.x > row_high(edges) { continue; }
-        let share = max(area_within(moved(edges, column.x), column.y - column.x) * per_area, 0.0);
-        beside += deposit_share(target_map, texel.x, texel.y, share, arriving);
-    }
-    return beside;
-}
-
 // Some workgroups (along y) per wide or flat footprint (along x). What lies beside the map goes straight to the global sums, lane
 // by lane and beam by beam: a sliver is far below the workgroup account's smallest count, and floats added up over several beams
 // would depend on the queue's order.
@@ -151,7 +126,7 @@ fn deposit_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         if is_segment(b.uv[0], b.uv[1], b.uv[2]) {
             if lane == 0u { beside = deposit_segment(target_map, b.uv[0], b.uv[1], b.uv[2], arriving); }
         } else {
-            beside = deposit_texels(target_map, b, arriving, lane, groups.y * 64u);
+            beside = deposit_texels(target_map, b.uv, arriving, lane, groups.y * 64u);
         }
         if beside > 0.0 {
             for (var channel = 0u; channel < light.channels; channel++) {

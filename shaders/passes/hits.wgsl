@@ -1,11 +1,13 @@
 // Hits — what does each ray strike first? One invocation per grid vertex.
 #import "lib/attenuation.wgsl"
+#import "lib/slicing.wgsl"
 #import "shared/light.wgsl"
 #import "shared/receivers.wgsl"
 #import "shared/floor_distance.wgsl"
 #import "shared/level_maps.wgsl"
 #import "shared/normals.wgsl"
 #import "shared/geometry.wgsl"
+#import "shared/reference_planes.wgsl"
 #import "shared/trace_light.wgsl"
 
 @group(0) @binding(8) var<storage, read> surface: array<vec4f>;

@@ -2,6 +2,8 @@
 #import "lib/attenuation.wgsl"
 #import "shared/light.wgsl"
 #import "shared/flux.wgsl"
+#import "shared/receivers.wgsl"
+#import "shared/floor_distance.wgsl"
 #import "shared/resolve.wgsl"
 
 // Linear RGB per texel: on the floor irradiance, W/m²; on an object the flux through the map's plane, W/m², which times the

@@ -1,8 +1,13 @@
-// Level map — what a light sees of a mesh through flat water. Drawn twice from the light: nearest (front) and farthest (back).
+// Level map — what a light sees of a mesh through flat water. Drawn from the light: nearest (front) and farthest (back), then, for
+// further layers, each time the nearest behind what was drawn before (depth peeling: Everitt 2001).
 #import "shared/level_map_view.wgsl"
 #import "shared/normals.wgsl"
 
 @group(0) @binding(14) var<storage, read> geometry: array<vec4u>;
+@group(0) @binding(23) var previous_depth: texture_2d<f32>;
+
+// Share of the map's depth by which a layer lies behind the one before; nearer it is the same surface, rounded.
+const SAME_SURFACE: f32 = 1e-5;
 
 struct Vertex {
     @builtin(position) clip: vec4f,
@@ -43,5 +48,12 @@ fn pack_normal(n: vec3f) -> u32 {
 
 @fragment
 fn level_map_fragment(in: Vertex) -> Texel {
+    return Texel(in.s, pack_normal(in.normal));
+}
+
+@fragment
+fn level_map_behind(in: Vertex) -> Texel {
+    let previous = textureLoad(previous_depth, vec2i(in.clip.xy), 0).x;
+    if in.s <= previous + SAME_SURFACE * (level_map_view.s_max - level_map_view.s_min) { discard; }
     return Texel(in.s, pack_normal(in.normal));
 }

@@ -9,6 +9,8 @@ const EDGE_MARK: u32 = 1u;
 @group(0) @binding(23) var front_depth: texture_2d<f32>;
 @group(0) @binding(24) var back_depth: texture_2d<f32>;
 @group(0) @binding(25) var front_normal: texture_2d<u32>;
+@group(0) @binding(26) var layer_depth: texture_2d<f32>;
+@group(0) @binding(27) var layer_normal: texture_2d<u32>;
 
 // Steepest step between neighbouring texels, in texels, that still counts as one surface.
 const CONNECTED_STEP: f32 = 8.0;
@@ -65,6 +67,16 @@ fn pyramid_store(@builtin(global_invocation_id) id: vec3u) {
     let deepest = select(closed_back(vec2i(id.xy), front, back), -EMPTY_DEPTH, front >= EMPTY_DEPTH);
     level_maps[word + 1u] = marked(deepest, is_edge(vec2i(id.xy), front));
     level_maps[level_map_view.source_offset + at] = textureLoad(front_normal, vec2i(id.xy), 0).x;
+}
+
+// A further layer: its depths, then its normals.
+@compute @workgroup_size(8, 8)
+fn pyramid_layer(@builtin(global_invocation_id) id: vec3u) {
+    let texels = level_map_view.texels;
+    if id.x >= texels || id.y >= texels { return; }
+    let at = id.y * texels + id.x;
+    level_maps[level_map_view.target_offset + at] = bitcast<u32>(textureLoad(layer_depth, vec2i(id.xy), 0).x);
+    level_maps[level_map_view.source_offset + at] = textureLoad(layer_normal, vec2i(id.xy), 0).x;
 }
 
 @compute @workgroup_size(8, 8)

@@ -5,6 +5,7 @@
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
 #import "lib/attenuation.wgsl"
+#import "lib/slicing.wgsl"
 #import "lib/coverage.wgsl"
 #import "lib/octahedral.wgsl"
 #import "lib/solid_angle.wgsl"
@@ -16,8 +17,10 @@
 #import "shared/level_maps.wgsl"
 #import "shared/normals.wgsl"
 #import "shared/geometry.wgsl"
+#import "shared/reference_planes.wgsl"
 #import "shared/trace_light.wgsl"
 #import "shared/flux.wgsl"
+#import "shared/deposit_share.wgsl"
 #import "shared/footprint.wgsl"
 #import "shared/beam_triangle.wgsl"
 #import "shared/unit_flux.wgsl"
@@ -138,7 +141,7 @@ fn halve(beam_index: u32, path: u32, is_last: bool) {
         let own = c[i % 3u];
         points[i] = corner_at(select(own, (sum - own) * 0.5, i >= 3u));
     }
-    let one_piece = !is_whole_beam && is_smooth(&points);
+    let one_piece = !PLANES && !is_whole_beam && is_smooth(&points);
     for (var k = 0u; k < select(4u, 1u, is_whole_beam); k++) {
         let b = part_of(&points, k);
         let straddles = !one_piece && !is_whole(b);

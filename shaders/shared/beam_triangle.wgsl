@@ -18,6 +18,11 @@ fn target_of(r: Receiver) -> Target {
 fn is_whole(b: Beam) -> bool {
     // Of a light under water some beams go half up and half to the far floor; there is nothing to be halved for.
     if light.kind == SUBMERGED && all(b.receiver <= vec3i(FLOOR)) { return true; }
+    if PLANES {
+        // All meshes are one: what stops there is no longer the floor's, and that is all.
+        let ends = min(b.receiver, vec3i(FLOOR + 1));
+        return ends.x == ends.y && ends.x == ends.z;
+    }
     if b.receiver.x != b.receiver.y || b.receiver.x != b.receiver.z { return false; }
     if b.receiver.x <= FLOOR { return true; }
     // On a mesh a jump in depth that the footprint does not explain is a step from one part to another.
@@ -52,6 +57,7 @@ fn deposit_part(b: Beam, is_torn: bool) -> Losses {
             losses.missed += flux;
             continue;
         }
+        if PLANES && b.receiver[k] > FLOOR { continue; }
         let r = receivers[b.receiver[k]];
         var uv = b.uv;
         var lengths_m = b.t;

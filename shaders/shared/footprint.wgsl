@@ -1,4 +1,5 @@
-// Depositing a triangle's flux on a receiver map: flux × covered share of each texel, in closed form.
+// Depositing a triangle's flux on a receiver map: flux × covered share of each texel, in closed form. Where the shares go is for
+// `deposit_share` to say, which a pass brings along.
 
 // Longest side (texels) under which a footprint is a point, and area / side² under which it is a segment: there the share of
 // f32 rounding in the coverage would pass 10⁻³ of the triangle's flux, while moving the flux by less than 10⁻³ texel does not show.
@@ -11,19 +12,6 @@ struct Target {
     height: i32,
     channels: u32,
     scale: f32, // counts per unit of flux
-}
-
-// Adds `share` of the flux at texel (x, y); what lies beside the map is returned.
-fn deposit_share(target_map: Target, x: i32, y: i32, share: f32, triangle_flux: vec3f) -> f32 {
-    if x < 0 || y < 0 || x >= target_map.width || y >= target_map.height { return share; }
-    let texel = target_map.offset + u32(y * target_map.width + x);
-    let counts = triangle_flux * (share * target_map.scale);
-    add_flux(texel, 0u, target_map.channels, counts.x);
-    if target_map.channels == 3u {
-        add_flux(texel, 1u, 3u, counts.y);
-        add_flux(texel, 2u, 3u, counts.z);
-    }
-    return 0.0;
 }
 
 // The share of a triangle (corners relative to `base`) in the column from `x_0` to `x_1` of a row from `y_0` to `y_1`,

@@ -1,27 +1,17 @@
 // The beams of the water grid, from what earlier passes have stored.
 
-@group(0) @binding(8) var<storage, read> surface: array<vec4f>;
-@group(0) @binding(9) var<storage, read> beams: array<vec4f>;
 @group(0) @binding(10) var<storage, read> hits: array<vec4f>;
 
 fn grid_beam(cell: vec2u, half: u32) -> Beam {
     let side = light.cells + 1u;
     let corners = beam_corners(cell, half);
-    var b: Beam;
-    var transmittance = 0.0;
+    var b = grid_rays(cell, half);
     for (var k = 0u; k < 3u; k++) {
         let ij = cell + corner_of(corners, k);
-        let vertex = ij.y * side + ij.x;
-        b.origin[k] = origin_at(vec2f(ij), surface[vertex].x);
-        let ray = beams[vertex];
-        b.direction[k] = ray.xyz;
-        transmittance += ray.w;
-        let hit = hits[vertex];
+        let hit = hits[ij.y * side + ij.x];
         b.uv[k] = hit.xy;
         b.t[k] = hit.z;
         b.receiver[k] = i32(hit.w);
     }
-    b.unit_flux = triangle_unit_flux(b.origin, b.direction);
-    b.transmitted = b.unit_flux * (transmittance / 3.0);
     return b;
 }

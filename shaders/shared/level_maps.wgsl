@@ -1,4 +1,5 @@
-// Level maps in their arena: per map the min–max pyramid (front, back) from level 0 on, then one packed normal per texel of level 0.
+// Level maps in their arena: per map the min–max pyramid (front, back) from level 0 on, then one packed normal per texel of level 0,
+// then for each further layer a depth and a packed normal per texel.
 
 @group(0) @binding(2) var<storage, read> level_maps: array<u32>;
 
@@ -24,6 +25,19 @@ fn level_map_depths(map_offset: u32, size: u32, level: u32, texel: vec2i) -> vec
     if any(texel < vec2i(0)) || any(texel >= vec2i(side)) { return vec2f(EMPTY_DEPTH, -EMPTY_DEPTH); }
     let word = map_offset + level_offset(size, level) + 2u * u32(texel.y * side + texel.x);
     return vec2f(bitcast<f32>(level_maps[word]), bitcast<f32>(level_maps[word + 1u]));
+}
+
+// Word of a layer's packed normal at a texel inside the map; of a further layer the depth lies texels² words before it.
+fn layer_word(r: Receiver, layer: u32, texel: vec2i) -> u32 {
+    let texels = r.map_width * r.map_width;
+    return r.level_map_offset + level_offset(r.map_width, r.level_count) + 2u * layer * texels + u32(texel.y) * r.map_width + u32(texel.x);
+}
+
+// Depth s of a layer at a texel; EMPTY_DEPTH where there is nothing.
+fn layer_depth(r: Receiver, layer: u32, texel: vec2i) -> f32 {
+    if layer == 0u { return level_map_depths(r.level_map_offset, r.map_width, 0u, texel).x; }
+    if any(texel < vec2i(0)) || any(texel >= vec2i(i32(r.map_width))) { return EMPTY_DEPTH; }
+    return bitcast<f32>(level_maps[layer_word(r, layer, texel) - r.map_width * r.map_width]);
 }
 
 // Front depth between texel centres, or the nearest texel's where a neighbour is empty or `gap` away in depth.

@@ -55,6 +55,9 @@ fn origin_at(ij: vec2f, height_m: f32) -> vec3f {
 // Whether any light is lost on its way; without it no exponential is computed.
 override ATTENUATES: bool = true;
 
+// Whether meshes get their light by reference planes instead of by hits: rays then only tell what is left for the floor.
+override PLANES: bool = false;
+
 // Mean over a triangle's corners of what is left, per channel, after the corners' path lengths.
 fn mean_transmission(lengths_m: vec3f) -> vec3f {
     if !ATTENUATES { return vec3f(1.0); }

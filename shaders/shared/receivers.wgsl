@@ -25,7 +25,7 @@ struct Receiver {
     irradiance_offset: u32, // first texel in the irradiance array
     s_per_m: f32,           // units of s per metre along the axis
     layer: u32,             // of the level map: 0 is the nearest
-    pad: u32,
+    planes: u32,            // reference planes of the box; 0 where light is placed by hits
     floor_min_m: vec2f,     // floor: the rectangle in local (x, z)
     floor_max_m: vec2f,
 }

@@ -6,17 +6,30 @@ struct Resolve {
     texel_count: u32,
     first_output: u32,     // first texel in the irradiance array
     adds: u32,             // 1: add to what is there
-    density_per_flux: f32, // 1/m²
+    density_per_flux: f32, // of a piece that is one map, 1/m²
+    receiver_count: u32,   // of a piece that holds the maps of receivers 1 … this, one behind the other; else 0
     pad_0: u32,
     pad_1: u32,
-    pad_2: u32,
 }
 
 @group(0) @binding(13) var<uniform> resolve: Resolve;
+
+// 1 / (area of a texel that lies at `texel` of the flux sums, m²).
+fn density_at(texel: u32) -> f32 {
+    if resolve.receiver_count == 0u { return resolve.density_per_flux; }
+    // The last receiver whose map begins here or before; a dry object's has no texels, and the next one begins where it does.
+    var low = 1u;
+    var high = resolve.receiver_count;
+    while low < high {
+        let middle = (low + high + 1u) / 2u;
+        if receivers[middle].map_offset <= texel { low = middle; } else { high = middle - 1u; }
+    }
+    return receivers[low].density_per_flux;
+}
 
 // Irradiance that texel `index` of the piece got from the light, W/m².
 fn resolved_w_m2(index: u32, channel: u32) -> f32 {
     let carried = select(0u, channel, light.channels == 3u);
     let counts = flux_counts(resolve.first_texel + index, carried, light.channels);
-    return counts * (resolve.density_per_flux / light.flux_scale) * resolve.power[channel];
+    return counts * (density_at(resolve.first_texel + index) / light.flux_scale) * resolve.power[channel];
 }

@@ -1,7 +1,33 @@
 // The first receiver a light ray strikes under water: the floor exactly, meshes by their level maps, and by their triangles where
 // the level map has an edge. Silhouettes are then as sharp as the mesh, whatever the level map's texels.
+//
+// Further layers are only met over an edge: what lies under a smooth front is reached by rays that come in beside it.
 
 const FAR_M: f32 = 1e6;
+// Texels in depth that a surface is held for farther away when it stands across what was struck; when it faces the other way, twice.
+const TURNED_TEXELS: f32 = 8.0;
+
+// The layer that a hit at `q` (map space) belongs to: of the surfaces at its texel the one nearest in depth that faces as the
+// triangle does. At a rim two surfaces meet, and depth alone would give a stripe of the one to the other.
+fn layer_of(r: Receiver, q: vec3f, met: MeshHit) -> u32 {
+    let texel = clamp(vec2i(floor(q.xy)), vec2i(0), vec2i(i32(r.map_width) - 1));
+    let normal = (1.0 - met.u - met.v) * unpack_normal(geometry[met.triangle].w) + met.u * unpack_normal(geometry[met.triangle + 1u].w)
+        + met.v * unpack_normal(geometry[met.triangle + 2u].w);
+    let texels_per_s = sqrt(r.density_per_flux) / r.s_per_m;
+    var best = 0u;
+    var least = EMPTY_DEPTH;
+    for (var layer = 0u; layer < light.layers; layer++) {
+        let depth = layer_depth(r, layer, texel);
+        if depth >= EMPTY_DEPTH { break; }
+        let turned = 1.0 - dot(unpack_normal(level_maps[layer_word(r, layer, texel)]), normalize(normal));
+        let distance = abs(depth - q.z) * texels_per_s + TURNED_TEXELS * turned;
+        if distance < least {
+            least = distance;
+            best = layer;
+        }
+    }
+    return best;
+}
 
 // Where the ray strikes object `index` nearer than t_max, or NO_RECEIVER.
 fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> Hit {
@@ -11,11 +37,15 @@ fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> H
     if r.level_count == 0u { return nothing; }
     let o = to_map(r, origin);
     let d = direction_to_map(r, direction);
+    if PLANES { return trace_planes(r, number, o, d, t_max); }
     let t = march_level_map(r, o, d, 0.0, t_max);
     if t == AT_EDGE {
         let met = trace_instance(index, origin, direction, 0.0, t_max);
         if met.t >= t_max { return nothing; }
-        return Hit((o + d * met.t).xy, met.t, i32(number));
+        let q = o + d * met.t;
+        var layer = 0u;
+        if light.layers > 1u { layer = layer_of(r, q, met); }
+        return Hit(q.xy, met.t, i32(number + layer));
     }
     if t < 0.0 || t >= t_max { return nothing; }
     // The march ends on a flat texel; once more with the depth between texels.

@@ -43,11 +43,11 @@ pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<()
         // For an empty GPU: no device is opened, so a plan can be had anywhere.
         let facts = SceneFacts::of(&scene.resolved).map_err(RenderError::from)?;
         let empty = NothingCached {
-            arena_bytes: config.level_map_budget_mib << 20,
+            arena_bytes: config.level_map_budget_bytes(),
         };
         plan_scene(&facts, &empty).map_err(RenderError::from)?
     };
-    let budget_bytes = config.memory_budget_mib << 20;
+    let budget_bytes = config.memory_budget_bytes();
     if plan.peak_bytes > budget_bytes {
         return Err(RenderError::OverBudget {
             what: "the frame at its peak (CAUSTICA_MEMORY_BUDGET_MIB)".to_owned(),

@@ -15,7 +15,7 @@ use crate::image::EncodeError;
 use crate::jobs::JobError;
 use crate::mesh::MeshError;
 use crate::render::RenderError;
-use crate::scene::{IssueKind, SceneError};
+use crate::scene::{Issue, IssueKind, SceneError};
 
 /// Seconds after which a client may try again when the device or the process is in transition.
 const RECOVERY_RETRY_AFTER_S: u64 = 5;
@@ -76,6 +76,8 @@ problem_kinds! {
     MalformedJson = BAD_REQUEST, "malformed-json", "The body is not JSON that can be read", Request;
     /// 400: the body cannot be read (broken multipart, connection trouble).
     MalformedBody = BAD_REQUEST, "malformed-body", "The body cannot be read", Request;
+    /// 400: a parameter in the query of the address is not valid.
+    InvalidQuery = BAD_REQUEST, "invalid-query", "The query of the address is not valid", Request;
     /// 404: no such route.
     NotFound = NOT_FOUND, "not-found", "There is nothing at this address", Request;
     /// 404: no mesh of that id.
@@ -136,6 +138,9 @@ pub enum ApiError {
     /// The body cannot be read.
     #[error("the body cannot be read: {0}")]
     MalformedBody(String),
+    /// Parameters in the query are refused; every finding names its own.
+    #[error("the query is not valid: {}", details(.0))]
+    InvalidQuery(Vec<Issue>),
     /// No such route.
     #[error("there is nothing at {path}; GET /openapi.yaml lists what there is")]
     NotFound {
@@ -210,6 +215,7 @@ impl ApiError {
     pub fn kind(&self) -> ProblemKind {
         match self {
             Self::MalformedBody(_) => ProblemKind::MalformedBody,
+            Self::InvalidQuery(_) => ProblemKind::InvalidQuery,
             Self::NotFound { .. } => ProblemKind::NotFound,
             Self::UnknownMesh { .. } => ProblemKind::UnknownMesh,
             Self::MethodNotAllowed { .. } => ProblemKind::MethodNotAllowed,
@@ -275,6 +281,12 @@ impl From<RenderError> for ApiError {
     fn from(error: RenderError) -> Self {
         Self::Job(JobError::Render(error))
     }
+}
+
+/// All findings in one line.
+fn details(issues: &[Issue]) -> String {
+    let all: Vec<&str> = issues.iter().map(|issue| issue.detail.as_str()).collect();
+    all.join("; ")
 }
 
 fn scene_kind(error: &SceneError) -> ProblemKind {

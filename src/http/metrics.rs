@@ -76,6 +76,7 @@ impl Metrics {
         counter!("caustica_device_losses_total").absolute(status.losses);
         gauge!("caustica_level_map_cache_bytes").set(cache.bytes as f64);
         gauge!("caustica_level_map_cache_entries").set(cache.entries as f64);
+        gauge!("caustica_level_map_cache_budget_bytes").set(cache.budget_bytes as f64);
         gauge!("caustica_queue_depth").set(state.queue().depth() as f64);
         gauge!("caustica_queue_capacity").set((settings.waiting + 1) as f64);
         gauge!("caustica_ready").set(f64::from(u8::from(state.obstacles().is_empty())));
@@ -115,7 +116,7 @@ fn describe() {
     );
     describe_counter!(
         PROBLEMS,
-        "Answers of type application/problem+json, by type."
+        "Problems told, by type: answers, and warm-ups of an upload that could not be done."
     );
     describe_histogram!(
         RENDER_SECONDS,
@@ -138,6 +139,11 @@ fn describe() {
         "Level maps held."
     );
     describe_gauge!("caustica_level_map_cache_entries", "Level maps held.");
+    describe_gauge!(
+        "caustica_level_map_cache_budget_bytes",
+        Unit::Bytes,
+        "Level maps that may be held."
+    );
     describe_gauge!("caustica_queue_depth", "Jobs that wait or run.");
     describe_gauge!("caustica_queue_capacity", "Jobs that may wait or run.");
     describe_gauge!("caustica_ready", "1 when /readyz is 200.");

@@ -4,7 +4,7 @@
 //! * [`routes`]: one resource per file;
 //! * [`state`]: what the routes share;
 //! * [`error`]: every way to fail and its status, nowhere else; [`problem`]: how that is told and documented;
-//! * [`extract`]: request bodies; [`accept`]: which answer the client wants;
+//! * [`extract`]: request bodies; [`warm`]: the query of an upload; [`accept`]: which answer the client wants;
 //! * [`observe`]: arrival, deadline, request log and request metrics, around every route; [`metrics`]: the Prometheus side;
 //! * [`openapi`]: the contract, generated from the routes;
 //! * [`server`]: the listening process, from start to graceful shutdown.
@@ -23,6 +23,7 @@ pub mod router;
 pub mod routes;
 pub mod server;
 pub mod state;
+pub mod warm;
 
 pub use error::{ApiError, ProblemKind};
 pub use openapi::openapi;

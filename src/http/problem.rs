@@ -10,7 +10,7 @@ use super::error::{ApiError, ProblemKind, Reason};
 use crate::jobs::JobError;
 use crate::mesh::MeshError;
 use crate::render::RenderError;
-use crate::scene::{Issue, SceneError};
+use crate::scene::Issue;
 
 /// Media type of a problem.
 pub const MEDIA_TYPE: &str = "application/problem+json";
@@ -31,7 +31,7 @@ pub struct Problem {
     pub reason: Reason,
     /// Whether the same request may succeed later.
     pub retryable: bool,
-    /// What is wrong with the scene, by place.
+    /// What is wrong with the scene, by place; or with the query, whose findings name their parameter.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<Issue>,
     /// What keeps the service from working, one sentence each.
@@ -60,8 +60,12 @@ impl Problem {
         };
         match error {
             ApiError::Scene(error) | ApiError::Job(JobError::Render(RenderError::Scene(error))) => {
-                problem.detail = summary(error);
+                problem.detail = summary(&error.issues);
                 problem.errors.clone_from(&error.issues);
+            }
+            ApiError::InvalidQuery(issues) => {
+                problem.detail = summary(issues);
+                problem.errors.clone_from(issues);
             }
             ApiError::Job(JobError::Render(RenderError::OverBudget {
                 needed_bytes,
@@ -90,8 +94,8 @@ impl Problem {
 }
 
 /// The findings in one line; the list has the rest.
-fn summary(error: &SceneError) -> String {
-    match error.issues.as_slice() {
+fn summary(issues: &[Issue]) -> String {
+    match issues {
         [] => "the scene is not valid".to_owned(),
         [only] => in_place(only),
         [first, rest @ ..] => format!("{} (and {} more)", in_place(first), rest.len()),
@@ -127,7 +131,7 @@ problem_sets! {
     MeshProblems = [UnknownMesh, Internal, DeadlinePassed];
     /// Of the upload of a mesh.
     UploadProblems = [
-        MalformedBody, BodyTooLarge, UnsupportedMediaType, InvalidMesh, Internal, DeadlinePassed, MeshStoreFull,
+        InvalidQuery, MalformedBody, BodyTooLarge, UnsupportedMediaType, InvalidMesh, Internal, DeadlinePassed, MeshStoreFull,
     ];
     /// Of the plan.
     PlanProblems = [

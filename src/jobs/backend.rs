@@ -1,9 +1,13 @@
 //! What the GPU thread owns.
 
+use std::sync::Arc;
+
 use tokio_util::sync::CancellationToken;
 
 use crate::frame::Frame;
 use crate::gpu::GpuError;
+use crate::level_map::{WarmUp, WarmedMap};
+use crate::mesh::Mesh;
 use crate::plan::Plan;
 use crate::render::{RenderError, Renderer, SelfCheck};
 use crate::scene::ResolvedScene;
@@ -27,6 +31,14 @@ pub trait RenderBackend {
         resolved: &ResolvedScene,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError>;
+
+    /// Builds level maps of a mesh for frames to come, and says of each sun what is ready.
+    fn warm(
+        &mut self,
+        mesh: &Arc<Mesh>,
+        wanted: &WarmUp,
+        cancel: &CancellationToken,
+    ) -> Result<Vec<WarmedMap>, RenderError>;
 
     /// Compares this machine with float64 physics.
     fn self_check(&mut self) -> Result<SelfCheck, GpuError>;
@@ -63,6 +75,15 @@ impl RenderBackend for Renderer {
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
         Renderer::render(self, resolved, cancel)
+    }
+
+    fn warm(
+        &mut self,
+        mesh: &Arc<Mesh>,
+        wanted: &WarmUp,
+        cancel: &CancellationToken,
+    ) -> Result<Vec<WarmedMap>, RenderError> {
+        Renderer::warm(self, mesh, wanted, cancel)
     }
 
     fn self_check(&mut self) -> Result<SelfCheck, GpuError> {

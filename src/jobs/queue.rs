@@ -18,6 +18,8 @@ use super::status::{GpuState, GpuStatus};
 use super::worker::Worker;
 use crate::frame::Frame;
 use crate::gpu::GpuError;
+use crate::level_map::{WarmUp, WarmedMap};
+use crate::mesh::Mesh;
 use crate::plan::Plan;
 use crate::render::{RenderError, SelfCheck};
 use crate::scene::ResolvedScene;
@@ -105,6 +107,22 @@ impl GpuQueue {
     pub async fn plan(&self, scene: ResolvedScene, arrival: Instant) -> Result<Plan, JobError> {
         self.submit(arrival, move |backend, context| {
             backend.plan(&scene, context.cancel)
+        })
+        .await
+    }
+
+    /// Builds level maps of a mesh for frames to come, and says of each sun what is ready.
+    ///
+    /// # Errors
+    /// As [`GpuQueue::render`]; level maps that were finished by then stay.
+    pub async fn warm(
+        &self,
+        mesh: Arc<Mesh>,
+        wanted: WarmUp,
+        arrival: Instant,
+    ) -> Result<Vec<WarmedMap>, JobError> {
+        self.submit(arrival, move |backend, context| {
+            backend.warm(&mesh, &wanted, context.cancel)
         })
         .await
     }

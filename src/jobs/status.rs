@@ -29,7 +29,7 @@ pub struct GpuStatus {
     pub self_check: Option<SelfCheck>,
     /// How often a device was lost or given up since the start.
     pub losses: u64,
-    /// The level-map cache after the last job.
+    /// The level-map cache after the last job: counts since the start, whatever devices were lost, and what is held now.
     pub level_maps: CacheStats,
     /// Typical wall time of a job, s; 0 before the first.
     pub job_s: f64,

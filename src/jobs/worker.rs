@@ -15,6 +15,7 @@ use super::queue::lock;
 use super::status::{GpuState, GpuStatus};
 use crate::gpu::GpuError;
 use crate::render::{RenderError, SelfCheck, SelfCheckItem};
+use crate::stats::CacheStats;
 
 /// How long the thread sleeps when there is nothing to do; a device lost in idleness is noticed within this.
 const IDLE_PERIOD: Duration = Duration::from_secs(1);
@@ -42,6 +43,8 @@ pub(super) struct Worker {
     publish: watch::Sender<GpuStatus>,
     forgotten: Arc<Mutex<BTreeSet<String>>>,
     last_try: Instant,
+    /// What the level-map caches of devices that are gone have counted.
+    gone: CacheStats,
 }
 
 impl Worker {
@@ -57,6 +60,7 @@ impl Worker {
             publish,
             forgotten,
             last_try: Instant::now(),
+            gone: CacheStats::default(),
         }
     }
 
@@ -79,11 +83,11 @@ impl Worker {
         let opened = catch_unwind(AssertUnwindSafe(|| {
             let mut backend = (self.factory)()?;
             let check = backend.self_check()?;
-            Ok::<_, GpuError>((backend.adapter(), check, backend))
+            Ok::<_, GpuError>((backend.adapter(), check, backend.level_map_cache(), backend))
         }))
         .unwrap_or_else(|panic| Err(GpuError::Validation(panic_message(&*panic))));
         match opened {
-            Ok((adapter, check, backend)) => {
+            Ok((adapter, check, cache, backend)) => {
                 let check = judged(check);
                 tracing::info!(
                     adapter = adapter.name,
@@ -96,6 +100,7 @@ impl Worker {
                     status.state = GpuState::Ready;
                     status.adapter = Some(adapter);
                     status.self_check = Some(check);
+                    status.level_maps = self.since_the_start(cache);
                 });
                 Some(backend)
             }
@@ -117,6 +122,9 @@ impl Worker {
             status.state = GpuState::Lost(why.to_owned());
             status.self_check = None;
             status.losses += 1;
+            // What was cached is gone with the device; what was counted is not.
+            self.gone = status.level_maps.clone();
+            (status.level_maps.entries, status.level_maps.bytes) = (0, 0);
         });
         discard(backend);
         *backend = self.open();
@@ -199,6 +207,16 @@ impl Worker {
         });
     }
 
+    /// A cache of the present device, with the counts of those that are gone.
+    fn since_the_start(&self, cache: CacheStats) -> CacheStats {
+        CacheStats {
+            hits: self.gone.hits + cache.hits,
+            misses: self.gone.misses + cache.misses,
+            evictions: self.gone.evictions + cache.evictions,
+            ..cache
+        }
+    }
+
     /// Frees what was forgotten and publishes the state of the cache.
     fn after_work(&self, backend: &mut Box<dyn RenderBackend>) {
         let forgotten = &self.forgotten;
@@ -207,7 +225,10 @@ impl Worker {
             backend.level_map_cache()
         }));
         match cache {
-            Ok(cache) => self.publish.send_modify(|status| status.level_maps = cache),
+            Ok(cache) => {
+                let cache = self.since_the_start(cache);
+                self.publish.send_modify(|status| status.level_maps = cache);
+            }
             Err(panic) => {
                 tracing::error!(
                     panic = panic_message(&*panic),

@@ -1,5 +1,6 @@
 //! Meshes: OBJ and MTL in (`obj`, with `scan`, `mtl` and `text` that check the texts first), what was mended (`repair`), why one was
-//! refused (`error`), a ray hierarchy over the triangles (`hierarchy`), the store (`store`) and what it tells (`info`).
+//! refused (`error`), a ray hierarchy over the triangles (`hierarchy`), the store (`store`) and what it tells (`info`); and a catalogue
+//! of meshes from formulas (`shapes`).
 
 mod error;
 pub mod hierarchy;
@@ -8,6 +9,7 @@ mod mtl;
 pub mod obj;
 mod repair;
 mod scan;
+pub mod shapes;
 pub mod store;
 mod text;
 

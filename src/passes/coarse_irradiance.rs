@@ -9,7 +9,7 @@ use super::slot::Slot;
 pub const PASS: PassDesc = PassDesc {
     name: "coarse_irradiance",
     repeat: Repeat::CoarseSun,
-    reads: &[Slot::Flux, Slot::Energy],
+    reads: &[Slot::Flux, Slot::Energy, Slot::Receivers],
     reads_if_present: &[],
     writes: &[Slot::CoarseIrradiance],
     wanted: |facts| {

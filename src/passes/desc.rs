@@ -66,6 +66,8 @@ pub enum Groups {
     Direct([u32; 3]),
     /// As many as the head of this queue says.
     Queue(Slot),
+    /// As many as this queue says from this word on.
+    QueueAt(Slot, u32),
 }
 
 /// What a step does.
@@ -73,13 +75,47 @@ pub enum Groups {
 pub enum Work {
     /// A compute dispatch.
     Compute(Groups),
-    /// Draws the front (nearest) or back (farthest) of a level map.
+    /// Draws a surface of a level map.
     DrawLevelMap {
-        /// The farthest instead of the nearest.
-        back: bool,
+        /// Which one.
+        surface: Surface,
         /// Vertices.
         vertices: u32,
     },
+    /// A compute dispatch that sees a further layer of the level map that was drawn.
+    StoreLayer {
+        /// Which one, 1 … layers − 1.
+        layer: u32,
+        /// Workgroups.
+        groups: [u32; 3],
+    },
+    /// Draws what lies nearest to a plane into that plane's slice image.
+    DrawSlice {
+        /// Which plane.
+        plane: u32,
+        /// Texels along each side of the image.
+        texels: u32,
+        /// Vertices.
+        vertices: u32,
+    },
+    /// A compute dispatch that reads a plane's slice image.
+    OverSlice {
+        /// Workgroups.
+        groups: [u32; 3],
+        /// Which plane.
+        plane: u32,
+    },
+}
+
+/// What is drawn of a mesh from the light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// The nearest.
+    Front,
+    /// The farthest.
+    Back,
+    /// The nearest behind layer `layer` − 1.
+    Layer(u32),
 }
 
 /// One dispatch or draw.

@@ -83,7 +83,9 @@ pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<(Comparison, f64
                 Some(Receiver::Object(wanted)) => wanted as usize == object,
                 Some(Receiver::Floor(_)) => false,
             };
-            for layer in (0..facts.quality.layers).filter(|_| counts) {
+            let is_asked_for =
+                |layer: &u32| facts.map_receiver.is_none() || *layer == facts.map_layer;
+            for layer in (0..facts.quality.layers).filter(|layer| counts && is_asked_for(layer)) {
                 let comparison = Comparison {
                     fine_width: side,
                     fine_height: side,

@@ -76,9 +76,24 @@ gpu_struct! {
         irradiance_offset: u32,
         s_per_m: f32,
         layer: u32,
-        pad: u32,
+        planes: u32,
         floor_min_m: [f32; 2],
         floor_max_m: [f32; 2],
+    }
+}
+
+gpu_struct! {
+    /// The uniform of `shaders/shared/cull.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    Planes = "Planes" {
+        receiver: u32,
+        object: u32,
+        planes: u32,
+        list: u32,
+        plane: u32,
+        scratch: u32,
+        capacity: u32,
+        smart: u32,
     }
 }
 
@@ -118,9 +133,9 @@ gpu_struct! {
         first_output: u32,
         adds: u32,
         density_per_flux: f32,
+        receiver_count: u32,
         pad_0: u32,
         pad_1: u32,
-        pad_2: u32,
     }
 }
 
@@ -217,10 +232,11 @@ gpu_struct! {
 pub type Layout = (&'static str, usize, &'static [(&'static str, usize)]);
 
 /// Layouts of all shared structs.
-pub const LAYOUTS: [Layout; 11] = [
+pub const LAYOUTS: [Layout; 12] = [
     Light::LAYOUT,
     Split::LAYOUT,
     Receiver::LAYOUT,
+    Planes::LAYOUT,
     Wave::LAYOUT,
     Comparison::LAYOUT,
     Resolve::LAYOUT,

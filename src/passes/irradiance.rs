@@ -3,6 +3,7 @@
 use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::{Resolve, vec4};
 use super::light::{light_uniform, receivers};
+use super::maps::MapLayout;
 use super::slot::{self, Slot};
 use super::surface::wanted_for_sun;
 use crate::scene::Receiver;
@@ -12,7 +13,7 @@ use crate::scene::facts::SceneFacts;
 pub const PASS: PassDesc = PassDesc {
     name: "irradiance",
     repeat: Repeat::Sun,
-    reads: &[Slot::Flux, Slot::Energy],
+    reads: &[Slot::Flux, Slot::Energy, Slot::Receivers],
     reads_if_present: &[],
     writes: &[Slot::Irradiance],
     wanted: |facts| {
@@ -24,60 +25,97 @@ pub const PASS: PassDesc = PassDesc {
                 map.width, map.height
             ));
         }
-        let wet = match facts.map_receiver {
-            None => facts.wet_objects().count(),
-            Some(Receiver::Floor(_)) => 0,
-            Some(Receiver::Object(_)) => 1,
-        };
-        if wet > 0 {
-            let most = facts
-                .wet_objects()
-                .map(|o| facts.objects[o].map_texels)
-                .max();
-            parts.push(format!(
-                "{wet} object map{} of {}² texels",
-                if wet == 1 { "" } else { "s" },
-                most.unwrap_or(0)
-            ));
-        }
+        parts.extend(object_maps(facts));
         Ok(parts.join(" and "))
     },
     steps: |facts, run| resolve_steps("irradiance_main", facts, run),
 };
 
-/// Whether anything reads the finished map of receiver `number` (0 the floor, then the objects' layers): a camera reads all, a map
-/// is of one.
-fn is_asked_for(facts: &SceneFacts, number: usize) -> bool {
-    match facts.map_receiver {
-        None => true,
-        Some(Receiver::Floor(_)) => number == 0,
-        Some(Receiver::Object(index)) => {
-            number > 0 && (number - 1) / facts.quality.layers as usize == index as usize
-        }
-    }
+/// How many maps of objects there are, and how large.
+fn object_maps(facts: &SceneFacts) -> Option<String> {
+    let all = match facts.map_receiver {
+        None => facts.wet_objects().count() as u32 * facts.quality.layers,
+        Some(Receiver::Floor(_)) => 0,
+        Some(Receiver::Object(_)) => 1,
+    };
+    let most = facts.wet_objects().map(|o| facts.objects[o].map_texels);
+    let most = most.max().filter(|_| all > 0)?;
+    let of_layers = match facts.quality.layers {
+        1 => String::new(),
+        layers if facts.map_receiver.is_none() => format!(", {layers} layers each"),
+        layers => format!(", layer {} of {layers}", facts.map_layer),
+    };
+    Some(format!(
+        "{all} object map{} of {most}² texels{of_layers}{}",
+        if all == 1 { "" } else { "s" },
+        facts.reduced_maps()
+    ))
 }
 
-/// One dispatch per receiver of a sun whose map is asked for: its piece of the flux sums becomes W/m².
+/// One piece of a sun's flux sums that becomes W/m² in one dispatch.
+struct Piece {
+    first_texel: u32,
+    texels: u32,
+    first_output: u32,
+    density_per_flux: f32,
+    /// Receivers whose maps it holds; 0: it is one map with the density above.
+    receivers: u32,
+}
+
+/// The pieces that anything reads: a camera the floor's map and those of all objects, which lie one behind the other; a map is of
+/// one receiver.
+fn pieces(facts: &SceneFacts, index: usize) -> Vec<Piece> {
+    let all = receivers(facts, index, |_| 0);
+    let layers = facts.quality.layers as usize;
+    let one = |number: usize| {
+        all.get(number).map(|receiver| Piece {
+            first_texel: receiver.map_offset,
+            texels: receiver.map_width * receiver.map_height,
+            first_output: receiver.irradiance_offset,
+            density_per_flux: receiver.density_per_flux,
+            receivers: 0,
+        })
+    };
+    let pieces = match facts.map_receiver {
+        Some(Receiver::Floor(_)) => vec![one(0)],
+        Some(Receiver::Object(object)) => {
+            vec![one(1 + object as usize * layers + facts.map_layer as usize)]
+        }
+        None => {
+            let maps = MapLayout::of(facts);
+            let objects = (!facts.objects.is_empty()).then(|| Piece {
+                first_texel: maps.flux_of(0, 0),
+                texels: u32::try_from(maps.object_texels()).unwrap_or(u32::MAX),
+                first_output: maps.irradiance_of(index, 0, 0),
+                density_per_flux: 0.0,
+                receivers: (all.len() - 1) as u32,
+            });
+            vec![one(0), objects]
+        }
+    };
+    let wanted = pieces.into_iter().flatten();
+    wanted.filter(|piece| piece.texels > 0).collect()
+}
+
+/// One dispatch per piece of a sun's flux sums that is asked for.
 pub(super) fn resolve_steps(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
     let Run::Sun { index, wide_sums } = run else {
         return Vec::new();
     };
     let mut steps = Vec::new();
-    for (number, receiver) in receivers(facts, index, |_| 0).iter().enumerate() {
-        let texels = receiver.map_width * receiver.map_height;
-        if texels == 0 || !is_asked_for(facts, number) {
-            continue;
-        }
+    for piece in pieces(facts, index) {
+        let is_floor = piece.first_texel == 0 && facts.floor_map.is_some();
         let resolve = Resolve {
             power: vec4(facts.suns[index].power, 0.0),
-            first_texel: receiver.map_offset,
-            texel_count: texels,
-            first_output: receiver.irradiance_offset,
-            adds: u32::from(number == 0 && index > 0),
-            density_per_flux: receiver.density_per_flux,
+            first_texel: piece.first_texel,
+            texel_count: piece.texels,
+            first_output: piece.first_output,
+            adds: u32::from(is_floor && index > 0),
+            density_per_flux: piece.density_per_flux,
+            receiver_count: piece.receivers,
             ..Resolve::default()
         };
-        let groups = texels.div_ceil(64);
+        let groups = piece.texels.div_ceil(64);
         let columns = groups.min(slot::MOST_GROUPS);
         steps.push(Step {
             entry,

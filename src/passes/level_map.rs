@@ -1,6 +1,7 @@
-//! Level map — draws what a sun sees of a mesh through flat water (Tipprasert 2006, §4.2): front, back, normals.
+//! Level map — draws what a sun sees of a mesh through flat water (Tipprasert 2006, §4.2): front, back, normals; then layer by layer
+//! what lies behind (depth peeling: Everitt, Interactive Order-Independent Transparency, 2001).
 
-use super::desc::{PassDesc, Repeat, Run, Step, Work};
+use super::desc::{PassDesc, Repeat, Run, Step, Surface, Work};
 use super::gpu_data::{LevelMapView, vec4};
 use super::slot::Slot;
 use crate::scene::facts::SceneFacts;
@@ -28,16 +29,18 @@ pub const PASS: PassDesc = PassDesc {
             return Vec::new();
         };
         let view = view_of(level_box, arena_offset, first_triangle);
-        [false, true]
-            .map(|back| Step {
+        [Surface::Front, Surface::Back]
+            .into_iter()
+            .chain((1..level_box.key.layers).map(Surface::Layer))
+            .map(|surface| Step {
                 entry: "level_map_vertex",
                 work: Work::DrawLevelMap {
-                    back,
+                    surface,
                     vertices: 3 * triangles,
                 },
                 uniforms: vec![("level_map_view", bytemuck::bytes_of(&view).to_vec())],
             })
-            .to_vec()
+            .collect()
     },
 };
 
@@ -48,9 +51,14 @@ pub(super) fn wanted_for_objects(facts: &SceneFacts) -> Result<String, String> {
         return Err("no object is under water".to_owned());
     }
     super::surface::wanted_for_sun(facts)?;
+    let layers = match facts.quality.layers {
+        1 => String::new(),
+        layers => format!(" in {layers} layers"),
+    };
     Ok(format!(
-        "{wet} object{} under water",
-        if wet == 1 { "" } else { "s" }
+        "{wet} object{} under water{layers}{}",
+        if wet == 1 { "" } else { "s" },
+        facts.reduced_maps()
     ))
 }
 

@@ -1,5 +1,5 @@
 //! Level map pyramid — stores a drawn level map in the arena and halves it down to one texel, keeping least front and largest
-//! back, so that rays pass empty space in large steps.
+//! back, so that rays pass empty space in large steps; further layers are stored as they are.
 
 use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::level_map::{view_of, wanted_for_objects};
@@ -42,6 +42,15 @@ pub const PASS: PassDesc = PassDesc {
         view.target_offset = arena_offset;
         view.source_offset = offset;
         let mut steps = vec![step("pyramid_store", texels, &view)];
+        for layer in 1..level_box.key.layers {
+            view.source_offset = offset + level_box.key.normals_after(layer);
+            view.target_offset = view.source_offset - texels * texels;
+            let groups = [texels.div_ceil(8), texels.div_ceil(8), 1];
+            steps.push(Step {
+                work: Work::StoreLayer { layer, groups },
+                ..step("pyramid_layer", texels, &view)
+            });
+        }
         for level in 1..level_box.key.levels() {
             view.level = level;
             view.source_offset = offsets[level as usize - 1];

@@ -137,12 +137,19 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
 
 /// Counts per unit flux in the energy account of a light; a power of two, so that scaling is exact.
 pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
+    // A beam may light texels of each plane.
+    let times = if places_by_planes(facts) {
+        f64::from(facts.quality.planes)
+    } else {
+        1.0
+    };
     let sun = &facts.suns[index];
     let beams = 2.0 * f64::from(facts.quality.water_cells).powi(2);
     let mut all = largest_beam(facts, sun) * beams;
     if sun.source.position_m().is_some() {
         all = all.min(MOST_LAMP_SR);
     }
+    let all = all * times;
     (2.0_f64.powi(60) / all).log2().floor().exp2()
 }
 
@@ -244,9 +251,18 @@ fn entering_sr(sun: &SunFacts) -> f64 {
     (near + far).abs()
 }
 
+/// Whether meshes get their light by planes.
+pub fn places_by_planes(facts: &SceneFacts) -> bool {
+    facts.quality.has_planes() && facts.wet_objects().next().is_some()
+}
+
 /// Whether narrow sums would be too coarse for a light from the start: very many beams on a texel, texels under a beam, or beams
 /// in very small parts.
 pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
+    // What planes land is not what rays take away: a sum that has wrapped would not be told from that.
+    if places_by_planes(facts) {
+        return true;
+    }
     let scale = flux_scale(facts, index, false);
     let means = || texel_fluxes(facts, index).map(|t| t.mean);
     let coarsest = means().fold(0.0, f64::max);
@@ -278,7 +294,12 @@ pub fn receivers(
     let layers = facts.quality.layers;
     for (object, level_box) in facts.suns[index].boxes.iter().enumerate() {
         let Some(level_box) = level_box else {
-            all.extend((0..layers).map(|_| Receiver::default()));
+            // Without texels, but in its place: `density_at` in the shaders looks receivers up by where their maps begin.
+            all.extend((0..layers).map(|layer| Receiver {
+                map_offset: maps.flux_of(object, layer),
+                layer,
+                ..Receiver::default()
+            }));
             continue;
         };
         let row = |r: glam::DVec4| [r.x as f32, r.y as f32, r.z as f32, r.w as f32];
@@ -295,6 +316,11 @@ pub fn receivers(
             density_per_flux: level_box.density_per_flux as f32,
             axis: vec4(level_box.axis, 0.0),
             s_per_m: level_box.s_per_m as f32,
+            planes: if facts.quality.has_planes() {
+                facts.quality.planes
+            } else {
+                0
+            },
             ..Receiver::default()
         };
         all.extend((0..layers).map(|layer| Receiver {

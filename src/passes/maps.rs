@@ -48,9 +48,28 @@ impl MapLayout {
         }
     }
 
+    /// Texels, behind the flux sums of a sun, of the caustics map of one plane: as many as the largest object's map has.
+    pub fn scratch_texels(&self) -> u64 {
+        self.objects
+            .iter()
+            .map(|&(_, texels)| texels)
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// The first of those.
+    pub fn scratch(&self) -> u32 {
+        narrow(self.flux_texels())
+    }
+
     /// Texels of the flux sums of one sun.
     pub fn flux_texels(&self) -> u64 {
         self.floor + self.per_sun
+    }
+
+    /// Texels of all objects' maps of one sun.
+    pub fn object_texels(&self) -> u64 {
+        self.per_sun
     }
 
     /// Texels of all irradiance maps.

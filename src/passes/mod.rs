@@ -9,6 +9,7 @@ pub mod camera_hits;
 pub mod camera_irradiance;
 pub mod coarse_irradiance;
 pub mod deposit;
+pub mod depth_profile;
 pub mod desc;
 pub mod estimate;
 pub mod gpu_data;
@@ -19,18 +20,21 @@ pub mod level_map;
 pub mod level_map_pyramid;
 pub mod light;
 pub mod maps;
+pub mod plane_steps;
+pub mod planes;
 pub mod shade;
 pub mod shaders;
 pub mod slot;
 pub mod split;
 pub mod surface;
 pub mod term;
+pub mod volumetric;
 
 pub use desc::{Groups, PassDesc, Repeat, Step, Work};
 pub use slot::Slot;
 
 /// All passes in the order they run.
-pub const ALL: [&PassDesc; 14] = [
+pub const ALL: [&PassDesc; 17] = [
     &level_map::PASS,
     &level_map_pyramid::PASS,
     &surface::PASS,
@@ -38,6 +42,9 @@ pub const ALL: [&PassDesc; 14] = [
     &hits::PASS,
     &deposit::PASS,
     &split::PASS,
+    &depth_profile::PASS,
+    &planes::PASS,
+    &volumetric::PASS,
     &landed::PASS,
     &irradiance::PASS,
     &coarse_irradiance::PASS,

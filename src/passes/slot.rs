@@ -2,6 +2,7 @@
 
 use super::maps::MapLayout;
 use crate::scene::facts::SceneFacts;
+use crate::scene::placement::LevelMapKey;
 
 /// Words at the head of a queue: the workgroups of the dispatch that empties it, and the count.
 pub const QUEUE_HEAD_WORDS: u64 = 4;
@@ -16,12 +17,18 @@ const MOST_PARTS: u64 = 1 << 22;
 pub const MOST_GROUPS: u32 = 65_535;
 /// Workgroups that share one wide footprint.
 pub const WIDE_GROUPS: u32 = 16;
+/// Words at the head of the queue of beams that may reach an object's planes: two dispatches with their counts.
+pub const CULL_HEAD_WORDS: u64 = 8;
+/// Words at the head of an object's list of planes.
+pub const PLANE_LIST_HEAD_WORDS: u64 = 4;
 /// (low, high) pairs of the energy account, see `shaders/shared/flux.wgsl`.
 pub const ENERGY_TERMS: u64 = 16;
 /// Bytes a frame holds besides its slots: the empty list, queue heads, arguments of indirect dispatches.
 pub const SUNDRY_BYTES: u64 = 256 + 32 + 12;
 /// Bytes per texel of the five textures that a level map is drawn into.
 pub const DRAW_TARGET_BYTES: u64 = 5 * 4;
+/// Bytes per texel of the two textures that each further layer is drawn into.
+pub const LAYER_TARGET_BYTES: u64 = 2 * 4;
 /// Most bytes of one layer of a band of the picture.
 pub const BAND_BYTES: u64 = 32 << 20;
 
@@ -65,6 +72,16 @@ pub enum Slot {
     SplitQueue,
     /// Footprints for a workgroup of their own.
     WideQueue,
+    /// Beams that may reach an object's planes.
+    BeamQueue,
+    /// Which planes of each object are used.
+    PlaneLists,
+    /// How many beams and planes those were.
+    PlaneCounts,
+    /// An image of each slice of the object at work.
+    Slices,
+    /// The slices seen so far, front to back.
+    Combined,
     /// Flux sums.
     Flux,
     /// Energy account.
@@ -103,7 +120,7 @@ pub struct SlotInfo {
 }
 
 /// All slots.
-pub const SLOTS: [Slot; 22] = [
+pub const SLOTS: [Slot; 27] = [
     Slot::Waves,
     Slot::Geometry,
     Slot::Instances,
@@ -115,6 +132,11 @@ pub const SLOTS: [Slot; 22] = [
     Slot::Hits,
     Slot::SplitQueue,
     Slot::WideQueue,
+    Slot::BeamQueue,
+    Slot::PlaneLists,
+    Slot::PlaneCounts,
+    Slot::Slices,
+    Slot::Combined,
     Slot::Flux,
     Slot::Energy,
     Slot::Irradiance,
@@ -159,7 +181,7 @@ impl Slot {
             ),
             Self::LevelMaps => (
                 "level_maps",
-                "front and back depth pyramids, packed normals",
+                "front and back depth pyramids, packed normals, further layers",
                 Lifetime::Cached,
             ),
             Self::Surface => (
@@ -185,6 +207,31 @@ impl Slot {
             Self::WideQueue => (
                 "wide_queue",
                 "slices of footprints of many texels",
+                Lifetime::Sun,
+            ),
+            Self::BeamQueue => (
+                "beam_queue",
+                "beams that may reach the object at work",
+                Lifetime::Sun,
+            ),
+            Self::PlaneLists => (
+                "plane_lists",
+                "planes in use and texels near each plane, per object",
+                Lifetime::Sun,
+            ),
+            Self::PlaneCounts => (
+                "plane_counts",
+                "beams kept, planes used and pieces of the box per object",
+                Lifetime::Sun,
+            ),
+            Self::Slices => (
+                "slices",
+                "textures: a colour image per plane of the object at work, and a depth",
+                Lifetime::Sun,
+            ),
+            Self::Combined => (
+                "combined",
+                "colour of the first slice per texel of the object at work",
                 Lifetime::Sun,
             ),
             Self::Flux => (
@@ -243,7 +290,7 @@ impl Slot {
             name,
             holds,
             lifetime,
-            is_queue: matches!(self, Self::SplitQueue | Self::WideQueue),
+            is_queue: matches!(self, Self::SplitQueue | Self::WideQueue | Self::BeamQueue),
         }
     }
 
@@ -271,7 +318,23 @@ impl Slot {
             Self::SplitQueue => {
                 4 * (SPLIT_HEAD_WORDS + 2 * cells * cells + 4 * u64::from(split_parts(facts)))
             }
-            Self::Flux => 8 * channels * MapLayout::of(facts).flux_texels(),
+            Self::BeamQueue => 4 * (CULL_HEAD_WORDS + 2 * cells * cells),
+            Self::PlaneLists => 4 * plane_list_words(facts) * facts.objects.len() as u64,
+            Self::PlaneCounts => 16 * facts.objects.len() as u64,
+            Self::Slices => {
+                let planes = u64::from(facts.quality.planes);
+                4 * MapLayout::of(facts).scratch_texels() * (planes + 1)
+            }
+            Self::Combined => 4 * MapLayout::of(facts).scratch_texels(),
+            Self::Flux => {
+                let maps = MapLayout::of(facts);
+                let scratch = if facts.quality.is_volumetric() {
+                    maps.scratch_texels()
+                } else {
+                    0
+                };
+                8 * channels * (maps.flux_texels() + scratch)
+            }
             Self::Energy => 8 * ENERGY_TERMS,
             Self::Irradiance => 12 * MapLayout::of(facts).irradiance_texels(),
             Self::CoarseIrradiance => 12 * MapLayout::of(&facts.coarse()).irradiance_texels(),
@@ -295,9 +358,15 @@ impl Slot {
     }
 }
 
+/// Words of an object's list of planes: its head, the planes, and the texels near each.
+pub fn plane_list_words(facts: &SceneFacts) -> u64 {
+    PLANE_LIST_HEAD_WORDS + 2 * u64::from(facts.quality.planes)
+}
+
 /// Bytes of the textures that a level map is drawn into.
-pub fn draw_target_bytes(texels: u32) -> u64 {
-    DRAW_TARGET_BYTES * u64::from(texels) * u64::from(texels)
+pub fn draw_target_bytes(key: &LevelMapKey) -> u64 {
+    let per_texel = DRAW_TARGET_BYTES + LAYER_TARGET_BYTES * u64::from(key.layers - 1);
+    per_texel * u64::from(key.texels) * u64::from(key.texels)
 }
 
 /// Bytes of the largest result that is copied to the host at once.

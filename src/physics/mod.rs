@@ -14,5 +14,6 @@ pub mod octahedral;
 pub mod refraction;
 pub mod registry;
 pub mod sky;
+pub mod slicing;
 pub mod solid_angle;
 pub mod turns;

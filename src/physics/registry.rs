@@ -5,7 +5,9 @@
 
 use glam::DVec3;
 
-use super::{attenuation, coverage, fresnel, octahedral, refraction, sky, solid_angle, turns};
+use super::{
+    attenuation, coverage, fresnel, octahedral, refraction, sky, slicing, solid_angle, turns,
+};
 
 /// Range of an argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,8 +64,48 @@ const COSINE: Domain = range(0.0, 1.0, &[0.0, 1e-7, 1e-3, 0.5, 0.999_999, 1.0]);
 const INDEX: Domain = range(0.25, 4.0, &[0.75, 1.0, 1.0001, 1.333, 2.4]);
 const PLACE: Domain = range(-8.0, 8.0, &[-8.0, -1.0, 0.0, 1e-6, 1.0, 8.0]);
 
+const BOX_TOP: Domain = range(-8.0, -1.0, &[-8.0, -1.0]);
+const BOX_BOTTOM: Domain = range(1.0, 8.0, &[1.0, 8.0]);
+const PLANE_COUNT: Domain = range(2.0, 1024.0, &[2.0, 3.0, 50.0, 101.0, 1024.0]);
+
 /// All twins.
-pub const TWINS: [Twin; 11] = [
+pub const TWINS: [Twin; 13] = [
+    Twin {
+        name: "plane_depth",
+        file: "lib/slicing.wgsl",
+        domain: &[
+            BOX_TOP,
+            BOX_BOTTOM,
+            PLANE_COUNT,
+            range(0.0, 1.0, &[0.0, 0.5, 1.0]),
+        ],
+        call: "vec4f(plane_depth(a[0], a[1], a[2], a[3] * (a[2] - 1.0)), 0.0, 0.0, 0.0)",
+        original: |a| {
+            let depth = slicing::plane_depth(a[0], a[1], a[2], a[3] * (a[2] - 1.0));
+            Some([depth, 0.0, 0.0, 0.0])
+        },
+        tolerance: tolerance(4e-6, 0.0, "four roundings of numbers up to 16"),
+    },
+    Twin {
+        name: "plane_of_depth",
+        file: "lib/slicing.wgsl",
+        domain: &[BOX_TOP, BOX_BOTTOM, PLANE_COUNT, PLACE],
+        call: "vec4f(plane_of_depth(a[0], a[1], a[2], a[3]), 0.0, 0.0, 0.0)",
+        original: |a| {
+            // At the border of two intervals either is right.
+            let halves = (a[3] - a[0]) * (2.0 * (a[2] - 1.0) / (a[1] - a[0]));
+            let clear = (halves - halves.round()).abs() > 0.01;
+            clear.then(|| {
+                [
+                    slicing::plane_of_depth(a[0], a[1], a[2], a[3]),
+                    0.0,
+                    0.0,
+                    0.0,
+                ]
+            })
+        },
+        tolerance: tolerance(1e-3, 0.0, "a whole number, clear of the intervals' borders"),
+    },
     Twin {
         name: "sin_cos_turns",
         file: "lib/turns.wgsl",

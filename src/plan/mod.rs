@@ -12,7 +12,7 @@ use utoipa::ToSchema;
 
 use crate::passes::{self, PassDesc, Repeat, Slot, slot};
 use crate::scene::LayerName;
-use crate::scene::facts::SceneFacts;
+use crate::scene::facts::{SceneFacts, Wanted};
 use crate::scene::placement::LevelMapKey;
 use crate::stats::{AbsentPass, ChosenDials, Warning};
 
@@ -116,8 +116,10 @@ impl Cached for WarmCache {
 pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
     let estimate =
         (facts.quality.estimate_error && !facts.suns.is_empty()).then_some(Slot::Differences);
-    if facts.only_estimate {
-        return estimate.into_iter().collect();
+    match facts.wanted {
+        Wanted::LevelMaps => return BTreeSet::from([Slot::LevelMaps]),
+        Wanted::Estimate => return estimate.into_iter().collect(),
+        Wanted::Frame => {}
     }
     if facts.camera.is_none() {
         return BTreeSet::from([Slot::Irradiance])
@@ -141,13 +143,14 @@ pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
 
 /// The distinct level maps that a scene needs, in the order of suns and objects.
 pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
-    let mut keys: Vec<&LevelMapKey> = Vec::new();
-    for level_box in facts.suns.iter().flat_map(|sun| sun.boxes.iter().flatten()) {
-        if !keys.contains(&&level_box.key) {
-            keys.push(&level_box.key);
-        }
-    }
-    keys
+    let mut seen = BTreeSet::new();
+    facts
+        .suns
+        .iter()
+        .flat_map(|sun| sun.boxes.iter().flatten())
+        .map(|level_box| &level_box.key)
+        .filter(|key| seen.insert(*key))
+        .collect()
 }
 
 /// Plans `facts` from `passes` (usually [`passes::ALL`]).
@@ -244,6 +247,12 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     } else if facts.camera.is_none() && facts.map_sky_w_m2.iter().all(|&e| e == 0.0) {
         add("sky", "output.include_sky is false");
     }
+    if facts.quality.level_of_detail > 0.0 && facts.camera.is_none() {
+        add(
+            "level_of_detail",
+            "the output is an irradiance map, seen by no camera: every object gets quality.level_map_texels",
+        );
+    }
     absent
 }
 
@@ -296,10 +305,14 @@ fn slots(
         .collect();
     let wanted: u64 = level_maps(facts).iter().map(|key| key.bytes()).sum();
     let draws = kept.iter().any(|(pass, _)| pass.repeat == Repeat::LevelMap);
+    let readback_bytes = match facts.wanted {
+        Wanted::LevelMaps => 0,
+        Wanted::Frame | Wanted::Estimate => slot::readback_bytes(facts),
+    };
     let mut besides = vec![
         (
             "readback",
-            slot::readback_bytes(facts),
+            readback_bytes,
             "the largest result on its way to the host",
         ),
         (
@@ -309,11 +322,13 @@ fn slots(
         ),
     ];
     if draws {
-        let largest = level_maps(facts).iter().map(|key| key.texels).max();
-        let bytes = slot::draw_target_bytes(largest.unwrap_or(0));
+        let largest = level_maps(facts)
+            .into_iter()
+            .map(slot::draw_target_bytes)
+            .max();
         besides.push((
             "level_map_targets",
-            bytes,
+            largest.unwrap_or(0),
             "textures that a level map is drawn into",
         ));
     }

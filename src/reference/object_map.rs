@@ -1,8 +1,8 @@
 //! The light on an object, in the texels of the map that its level map spans.
 //!
-//! Plain rays go down all over the water that can light the object. Those that strike its first surface along the map's axis
-//! are counted in the texel they strike; the cells of the lattice are the texels' shadows on the water, so flat water gives
-//! every texel the same count.
+//! Plain rays go down all over the water that can light the object. Those that strike the surface that is asked for, the first along
+//! the map's axis or one behind it, are counted in the texel they strike; the cells of the lattice are the texels' shadows on the
+//! water, so flat water gives every texel of the first surface the same count.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -58,7 +58,7 @@ pub(super) fn object_map(
         sun.flat,
         1,
     );
-    let counter = Counter::new(&place, sun, &level_box, object);
+    let counter = Counter::new(&place, sun, &level_box, (object, place.facts.map_layer));
     let cosines = counter.cosines(side);
     let (halves, rays) = counter.rounds(&cosines, settings, progress, cancelled)?;
     let [a, b] = &halves;
@@ -108,6 +108,8 @@ struct Counter<'a> {
     sun: &'a PlacedSun,
     level_box: &'a LevelBox,
     object: usize,
+    /// How many of the object's surfaces lie before the one that is asked for, along the axis.
+    layer: u32,
     /// Where (u, v, s) is (0, 0, 0), local, m.
     corner_m: DVec3,
     /// From a texel to the next along u and v, m.
@@ -121,7 +123,12 @@ struct Counter<'a> {
 }
 
 impl<'a> Counter<'a> {
-    fn new(place: &'a Place, sun: &'a PlacedSun, level_box: &'a LevelBox, object: usize) -> Self {
+    fn new(
+        place: &'a Place,
+        sun: &'a PlacedSun,
+        level_box: &'a LevelBox,
+        (object, layer): (usize, u32),
+    ) -> Self {
         let facts = &place.facts;
         let bounds = place.occluders.bounds[object];
         let size_m = (bounds.max_m - bounds.min_m).length();
@@ -145,6 +152,7 @@ impl<'a> Counter<'a> {
             sun,
             level_box,
             object,
+            layer,
             corner_m,
             edges_m: [u_m, v_m],
             part: cells.around(&window),
@@ -163,7 +171,7 @@ impl<'a> Counter<'a> {
         DVec3::new(u, v, s)
     }
 
-    /// |n·axis| of the first surface seen along the axis at each texel's centre.
+    /// |n·axis| of the surface that is asked for, along the axis at each texel's centre.
     fn cosines(&self, side: u32) -> Vec<Option<f64>> {
         let axis = self.level_box.axis;
         let bounds = self.place.occluders.bounds[self.object];
@@ -176,9 +184,14 @@ impl<'a> Counter<'a> {
                 let texel_m = self.corner_m + self.edges_m[0] * st.x + self.edges_m[1] * st.y;
                 let before_m = (middle_m - texel_m).dot(axis) - size_m;
                 let mut stack = Vec::new();
-                self.place
-                    .occluders
-                    .first_seen_of(self.object, texel_m + axis * before_m, axis, &mut stack)
+                let mut from_m = texel_m + axis * before_m;
+                let occluders = &self.place.occluders;
+                for _ in 0..self.layer {
+                    let before = occluders.first_seen_of(self.object, from_m, axis, &mut stack)?;
+                    from_m += axis * (before.distance_m + self.same_surface_m);
+                }
+                occluders
+                    .first_seen_of(self.object, from_m, axis, &mut stack)
                     .map(|seen| seen.normal.dot(axis).abs())
             })
             .collect()
@@ -287,7 +300,7 @@ impl<'a> Counter<'a> {
         total
     }
 
-    /// Books ray `i` of `block` where it crosses the first surface along the axis.
+    /// Books ray `i` of `block` where it crosses the surface that is asked for.
     fn book(
         &self,
         block: &Block,
@@ -303,12 +316,22 @@ impl<'a> Counter<'a> {
         let occluders = &self.place.occluders;
         let from_m = DVec3::new(top_m.x, block.height_m[i], top_m.y);
         let to_m = DVec3::new(block.x_m[i], -self.end_m, block.z_m[i]);
-        let Scratch { stack, crossings } = scratch;
+        let Scratch {
+            stack,
+            crossings,
+            before_m,
+        } = scratch;
         occluders.crossings(self.object, from_m, to_m, stack, crossings);
         let axis = self.level_box.axis;
         let first = crossings.iter().find(|&&fraction| {
             let p_m = from_m.lerp(to_m, fraction);
-            !occluders.meets_object(self.object, p_m, -axis, self.same_surface_m, stack)
+            let same_m = self.same_surface_m;
+            if self.layer == 0 {
+                return !occluders.meets_object(self.object, p_m, -axis, same_m, stack);
+            }
+            let before =
+                occluders.surfaces_beyond(self.object, (p_m, -axis), same_m, stack, before_m);
+            before == self.layer as usize
         });
         let Some(&fraction) = first else { return };
         let p_m = from_m.lerp(to_m, fraction);
@@ -364,4 +387,6 @@ impl<'a> Counter<'a> {
 struct Scratch {
     stack: Vec<usize>,
     crossings: Vec<f64>,
+    /// Distances of the surfaces before a point.
+    before_m: Vec<f64>,
 }

@@ -296,6 +296,34 @@ impl Occluders {
         met
     }
 
+    /// How many surfaces of `object` the ray from a point along a unit direction meets farther than `apart_m`; what lies nearer to
+    /// one another than that is one surface. `distances_m` is scratch space.
+    pub(super) fn surfaces_beyond(
+        &self,
+        object: usize,
+        (from_m, direction): (DVec3, DVec3),
+        apart_m: f64,
+        stack: &mut Vec<usize>,
+        distances_m: &mut Vec<f64>,
+    ) -> usize {
+        distances_m.clear();
+        self.walk(
+            from_m,
+            direction,
+            f64::MAX,
+            stack,
+            |triangle, [t, ..], until| {
+                if triangle.object == object && t > apart_m {
+                    distances_m.push(t);
+                }
+                until
+            },
+        );
+        distances_m.sort_by(f64::total_cmp);
+        let again = distances_m.windows(2).filter(|w| w[1] - w[0] <= apart_m);
+        distances_m.len() - again.count()
+    }
+
     /// Calls `visit` with every triangle that the ray `from_m` + t `way` meets at 0 ≤ t ≤ `until`, in no order; (t, u, v) of
     /// the meeting, and `until`, for which it gives the new one.
     fn walk(

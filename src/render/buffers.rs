@@ -10,6 +10,7 @@ use crate::passes::slot::{Lifetime, SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
 use crate::plan::Plan;
 use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
+use crate::scene::placement::LevelMapKey;
 
 /// The buffers of one frame, by slot name.
 pub(super) struct FrameBuffers {
@@ -17,12 +18,25 @@ pub(super) struct FrameBuffers {
     pub(super) empty: wgpu::Buffer,
     pub(super) queue_heads: wgpu::Buffer,
     pub(super) indirect: wgpu::Buffer,
+    pub(super) slices: Option<SliceTargets>,
+}
+
+/// Images of the slices of the object at work, one per plane, and the depth they are drawn with.
+pub(super) struct SliceTargets {
+    pub(super) colors: Vec<wgpu::TextureView>,
+    pub(super) depth: wgpu::TextureView,
 }
 
 impl FrameBuffers {
     /// The buffer of a slot; lists that hold nothing in this scene are one zero element.
     pub(super) fn get(&self, name: &str) -> &wgpu::Buffer {
         self.by_name.get(name).unwrap_or(&self.empty)
+    }
+
+    /// The image of a plane's slice.
+    pub(super) fn slice(&self, plane: u32) -> Option<wgpu::TextureView> {
+        let slices = self.slices.as_ref()?;
+        slices.colors.get(plane as usize).cloned()
     }
 }
 
@@ -33,6 +47,26 @@ pub(super) struct DrawTargets {
     pub(super) normal: wgpu::TextureView,
     pub(super) scratch_normal: wgpu::TextureView,
     pub(super) depth: wgpu::TextureView,
+    /// Depth and normal of each further layer.
+    pub(super) layers: Vec<[wgpu::TextureView; 2]>,
+}
+
+impl DrawTargets {
+    /// What a pass that takes in a drawn level map binds; `layer` is the further layer it is about, if any.
+    pub(super) fn by_name(&self, name: &str, layer: u32) -> Option<wgpu::TextureView> {
+        let further = |which: usize| {
+            let layer = self.layers.get((layer as usize).checked_sub(1)?)?;
+            Some(layer[which].clone())
+        };
+        match name {
+            "layer_depth" => further(0),
+            "layer_normal" => further(1),
+            "front_depth" => Some(self.front.clone()),
+            "back_depth" => Some(self.back.clone()),
+            "front_normal" => Some(self.normal.clone()),
+            _ => None,
+        }
+    }
 }
 
 impl Renderer {
@@ -46,6 +80,7 @@ impl Renderer {
         use wgpu::BufferUsages as U;
         let device = self.gpu.device.clone();
         let mut by_name = BTreeMap::new();
+        let mut slices = None;
         for planned in &plan.slots {
             let Some(slot) = Slot::by_name(&planned.name) else {
                 continue;
@@ -61,6 +96,7 @@ impl Renderer {
                         by_name.insert(slot_name(slot), self.arena_buffer());
                     }
                 }
+                Slot::Slices => slices = Some(self.slice_targets(facts)),
                 _ => {
                     let usage = U::STORAGE | U::COPY_DST | U::COPY_SRC;
                     let buffer = self
@@ -85,6 +121,7 @@ impl Renderer {
             by_name,
             empty,
             queue_heads,
+            slices,
             indirect: self
                 .pool
                 .lend(&device, "indirect", 12, U::INDIRECT | U::COPY_DST),
@@ -166,34 +203,62 @@ impl Renderer {
             .clone()
     }
 
-    pub(super) fn draw_targets(&self, texels: u32) -> DrawTargets {
-        let texture = |label, format| {
-            self.gpu
-                .device
-                .create_texture(&wgpu::TextureDescriptor {
-                    label: Some(label),
-                    size: wgpu::Extent3d {
-                        width: texels,
-                        height: texels,
-                        depth_or_array_layers: 1,
-                    },
-                    mip_level_count: 1,
-                    sample_count: 1,
-                    dimension: wgpu::TextureDimension::D2,
-                    format,
-                    usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                        | wgpu::TextureUsages::TEXTURE_BINDING,
-                    view_formats: &[],
-                })
-                .create_view(&wgpu::TextureViewDescriptor::default())
-        };
+    pub(super) fn draw_targets(&self, key: &LevelMapKey) -> DrawTargets {
+        let texture = |label, format| self.target_texture(label, format, key.texels);
         DrawTargets {
             front: texture("front depth", wgpu::TextureFormat::R32Float),
             back: texture("back depth", wgpu::TextureFormat::R32Float),
             normal: texture("front normal", wgpu::TextureFormat::R32Uint),
             scratch_normal: texture("back normal", wgpu::TextureFormat::R32Uint),
             depth: texture("depth", wgpu::TextureFormat::Depth32Float),
+            layers: (1..key.layers)
+                .map(|_| {
+                    [
+                        texture("layer's depth", wgpu::TextureFormat::R32Float),
+                        texture("layer's normal", wgpu::TextureFormat::R32Uint),
+                    ]
+                })
+                .collect(),
         }
+    }
+
+    /// Images for the slices of the largest object, and a depth.
+    fn slice_targets(&self, facts: &SceneFacts) -> SliceTargets {
+        let wet = facts.wet_objects();
+        let texels = wet.map(|o| facts.objects[o].map_texels).max().unwrap_or(1);
+        let texture = |label, format| self.target_texture(label, format, texels);
+        SliceTargets {
+            colors: (0..facts.quality.planes)
+                .map(|_| texture("slice", wgpu::TextureFormat::Rgba8Unorm))
+                .collect(),
+            depth: texture("slice depth", wgpu::TextureFormat::Depth32Float),
+        }
+    }
+
+    fn target_texture(
+        &self,
+        label: &str,
+        format: wgpu::TextureFormat,
+        texels: u32,
+    ) -> wgpu::TextureView {
+        self.gpu
+            .device
+            .create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d {
+                    width: texels,
+                    height: texels,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+            .create_view(&wgpu::TextureViewDescriptor::default())
     }
 
     pub(super) fn uniform_buffers(&self, step: &Step) -> BTreeMap<&'static str, wgpu::Buffer> {
@@ -232,7 +297,9 @@ pub(super) fn clear_for_sun(encoder: &mut wgpu::CommandEncoder, buffers: &FrameB
             }
             encoder.copy_buffer_to_buffer(&buffers.queue_heads, head, buffer, 0, 16);
         } else if info.lifetime == Lifetime::Sun
-            && (*name == slot_name(Slot::Flux) || *name == slot_name(Slot::Energy))
+            && [Slot::Flux, Slot::Energy, Slot::PlaneLists]
+                .iter()
+                .any(|slot| *name == slot_name(*slot))
         {
             encoder.clear_buffer(buffer, 0, None);
         }

@@ -13,7 +13,10 @@ use crate::passes::{estimate, light, term};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
 use crate::scene::{LayerName, Receiver};
-use crate::stats::{EnergyAccount, Warning};
+use crate::stats::{EnergyAccount, PlaneStats, Warning};
+
+/// Closure up to which planes are said to conserve energy: that of hits.
+const PLANES_CLOSE: f64 = 1e-5;
 
 /// The accounts of all suns from their raw sums, and what is worth a warning.
 pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Vec<Warning>) {
@@ -54,6 +57,7 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
             closure: 0.0,
         };
         account.closure = closure(&account);
+        warnings.extend(not_conserved(facts, &account));
         if terms[term::TORN_COUNT] > 0 {
             warnings.push(Warning {
                 flux_w: Some(grey(term::TORN)),
@@ -63,6 +67,51 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
         accounts.push(account);
     }
     (accounts, warnings)
+}
+
+/// What placing light by planes took, from the counts of each sun and object.
+pub(super) fn planes(facts: &SceneFacts, counts: &[Vec<[u32; 4]>]) -> Vec<PlaneStats> {
+    let cells = facts.quality.water_cells;
+    let mut all = Vec::new();
+    for (sun, counts) in facts.suns.iter().zip(counts) {
+        for (object, (level_box, &[kept, used, sub_boxes, _])) in
+            sun.boxes.iter().zip(counts).enumerate()
+        {
+            if level_box.is_some() {
+                all.push(PlaneStats {
+                    light: sun.light,
+                    object: object as u32,
+                    specified: facts.quality.planes,
+                    used,
+                    sub_boxes,
+                    beams: 2 * cells * cells,
+                    beams_kept: kept,
+                });
+            }
+        }
+    }
+    all
+}
+
+/// Where light is placed by planes: by how much what landed differs from what the rays took away.
+fn not_conserved(facts: &SceneFacts, account: &EnergyAccount) -> Option<Warning> {
+    if !light::places_by_planes(facts) || account.closure <= PLANES_CLOSE {
+        return None;
+    }
+    let surplus_w: [f64; 3] =
+        std::array::from_fn(|c| accounted_w(account, c) - account.emitted_w[c]);
+    let mut message = format!(
+        "planes do not conserve energy: by {:.3} % of the flux of light {} more or less lies on the objects than their rays took",
+        100.0 * account.closure,
+        account.light
+    );
+    if facts.quality.is_volumetric() && facts.attenuates() {
+        message.push_str("; what was absorbed on the way to them is part of that");
+    }
+    Some(Warning {
+        flux_w: Some(surplus_w),
+        ..Warning::new("planes_do_not_conserve", message)
+    })
 }
 
 /// What beams that straddle receivers to the end have come to.
@@ -98,18 +147,20 @@ pub(super) fn missing_flux(facts: &SceneFacts, index: usize, terms: &[u64]) -> f
     missing / light::energy_scale(facts, index)
 }
 
+/// All terms of a channel but what was emitted, W.
+fn accounted_w(account: &EnergyAccount, c: usize) -> f64 {
+    account.landed_w[c]
+        + account.absorbed_w[c]
+        + account.scattered_w[c]
+        + account.reflected_w[c]
+        + account.left_region_w[c]
+        + account.missed_w[c]
+}
+
 fn closure(account: &EnergyAccount) -> f64 {
     (0..3)
         .filter(|&c| account.emitted_w[c] > 0.0)
-        .map(|c| {
-            let accounted = account.landed_w[c]
-                + account.absorbed_w[c]
-                + account.scattered_w[c]
-                + account.reflected_w[c]
-                + account.left_region_w[c]
-                + account.missed_w[c];
-            ((account.emitted_w[c] - accounted) / account.emitted_w[c]).abs()
-        })
+        .map(|c| ((account.emitted_w[c] - accounted_w(account, c)) / account.emitted_w[c]).abs())
         .fold(0.0, f64::max)
 }
 
@@ -269,7 +320,11 @@ pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
         return MapPlace {
             width: texels,
             height: texels,
-            first_texel: u64::from(MapLayout::of(facts).irradiance_of(0, index as usize, 0)),
+            first_texel: u64::from(MapLayout::of(facts).irradiance_of(
+                0,
+                index as usize,
+                facts.map_layer,
+            )),
             level_map: found.map(|b| b.key.clone()),
             axis_in_mesh: found.map_or(DVec3::Y, |b| b.axis),
         };

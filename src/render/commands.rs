@@ -1,12 +1,14 @@
 //! Dispatches, draws and submissions.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use super::buffers::{DrawTargets, FrameBuffers};
 use super::{Renderer, ms_since, slot_name};
 use crate::gpu::kernel::RasterTargets;
+use crate::gpu::shader::Access;
 use crate::gpu::{Binding, GpuError, Kernel, RasterKernel};
-use crate::passes::desc::{Groups, PassDesc, Run, Step, Work};
+use crate::passes::desc::{Groups, PassDesc, Run, Step, Surface, Work};
 use crate::passes::level_map::EMPTY_DEPTH;
 use crate::scene::facts::SceneFacts;
 use crate::stats::TimeStats;
@@ -95,11 +97,35 @@ impl Renderer {
                     &step,
                     (groups, wide_sums),
                     buffers,
-                    targets,
+                    &|name| targets.and_then(|t| t.by_name(name, 0)),
                 )?,
-                Work::DrawLevelMap { back, vertices } => {
+                Work::StoreLayer { layer, groups } => self.dispatch(
+                    encoder,
+                    pass,
+                    facts,
+                    &step,
+                    (Groups::Direct(groups), wide_sums),
+                    buffers,
+                    &|name| targets.and_then(|t| t.by_name(name, layer)),
+                )?,
+                Work::OverSlice { groups, plane } => self.dispatch(
+                    encoder,
+                    pass,
+                    facts,
+                    &step,
+                    (Groups::Direct(groups), wide_sums),
+                    buffers,
+                    &|name| (name == "slice").then(|| buffers.slice(plane)).flatten(),
+                )?,
+                Work::DrawSlice {
+                    plane,
+                    texels,
+                    vertices,
+                } => self.draw_slice(encoder, pass, &step, (plane, texels, vertices), buffers)?,
+                Work::DrawLevelMap { surface, vertices } => {
                     if let Some(targets) = targets {
-                        self.draw(encoder, pass, &step, (back, vertices), buffers, targets)?;
+                        let drawn = (surface, vertices);
+                        self.draw(encoder, pass, &step, drawn, buffers, targets)?;
                     }
                 }
             }
@@ -119,33 +145,50 @@ impl Renderer {
         step: &Step,
         (groups, wide_sums): (Groups, bool),
         buffers: &FrameBuffers,
-        targets: Option<&DrawTargets>,
+        texture: &dyn Fn(&str) -> Option<wgpu::TextureView>,
     ) -> Result<(), GpuError> {
-        let key = (pass.name, step.entry, facts.attenuates(), wide_sums);
+        let by_planes = facts.quality.has_planes();
+        let key = (
+            pass.name,
+            step.entry,
+            facts.attenuates(),
+            wide_sums,
+            by_planes,
+        );
         if !self.kernels.contains_key(&key) {
             let path = format!("passes/{}.wgsl", pass.name);
             let switch = |on: bool| f64::from(u8::from(on));
             let constants = [
                 ("ATTENUATES", switch(facts.attenuates())),
                 ("WIDE_SUMS", switch(wide_sums)),
+                ("PLANES", switch(by_planes)),
             ];
             let kernel = Kernel::new(&self.gpu, &self.sources, &path, step.entry, &constants)?;
             self.kernels.insert(key, kernel);
         }
         let kernel = &self.kernels[&key];
         let uniforms = self.uniform_buffers(step);
-        let group = kernel.bind(&self.gpu, |name| match name {
-            "front_depth" => targets.map(|t| Binding::Texture(&t.front)),
-            "back_depth" => targets.map(|t| Binding::Texture(&t.back)),
-            "front_normal" => targets.map(|t| Binding::Texture(&t.normal)),
-            _ => Some(Binding::Buffer(
+        let textures: BTreeMap<&str, wgpu::TextureView> = kernel
+            .bindings()
+            .iter()
+            .filter(|bound| matches!(bound.access, Access::Texture(_)))
+            .filter_map(|bound| Some((bound.name.as_str(), texture(&bound.name)?)))
+            .collect();
+        let group = kernel.bind(&self.gpu, |name| match textures.get(name) {
+            Some(view) => Some(Binding::Texture(view)),
+            None => Some(Binding::Buffer(
                 uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
             )),
         })?;
-        if let Groups::Queue(slot) = groups {
+        let queue = match groups {
+            Groups::Direct(_) => None,
+            Groups::Queue(slot) => Some((slot, 0)),
+            Groups::QueueAt(slot, word) => Some((slot, word)),
+        };
+        if let Some((slot, word)) = queue {
             encoder.copy_buffer_to_buffer(
                 buffers.get(slot_name(slot)),
-                0,
+                4 * u64::from(word),
                 &buffers.indirect,
                 0,
                 12,
@@ -166,7 +209,9 @@ impl Renderer {
         compute.set_bind_group(0, &group, &[]);
         match groups {
             Groups::Direct([x, y, z]) => compute.dispatch_workgroups(x, y, z),
-            Groups::Queue(_) => compute.dispatch_workgroups_indirect(&buffers.indirect, 0),
+            Groups::Queue(_) | Groups::QueueAt(..) => {
+                compute.dispatch_workgroups_indirect(&buffers.indirect, 0);
+            }
         }
         Ok(())
     }
@@ -176,16 +221,21 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         pass: &'static PassDesc,
         step: &Step,
-        (back, vertices): (bool, u32),
+        (surface, vertices): (Surface, u32),
         buffers: &FrameBuffers,
         targets: &DrawTargets,
     ) -> Result<(), GpuError> {
-        if !self.raster_kernels.contains_key(&back) {
+        let back = surface == Surface::Back;
+        let key = match surface {
+            Surface::Front | Surface::Back => ("level_map_fragment", back),
+            Surface::Layer(_) => ("level_map_behind", false),
+        };
+        if !self.raster_kernels.contains_key(&key) {
             let kernel = RasterKernel::new(
                 &self.gpu,
                 &self.sources,
                 &format!("passes/{}.wgsl", pass.name),
-                (step.entry, "level_map_fragment"),
+                (step.entry, key.0),
                 &RasterTargets {
                     colors: &[wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint],
                     depth: wgpu::TextureFormat::Depth32Float,
@@ -196,19 +246,24 @@ impl Renderer {
                     },
                 },
             )?;
-            self.raster_kernels.insert(back, kernel);
+            self.raster_kernels.insert(key, kernel);
         }
-        let kernel = &self.raster_kernels[&back];
+        let kernel = &self.raster_kernels[&key];
         let uniforms = self.uniform_buffers(step);
-        let group = kernel.bind(&self.gpu, |name| {
-            Some(Binding::Buffer(
+        let group = kernel.bind(&self.gpu, |name| match (name, surface) {
+            ("previous_depth", Surface::Layer(1)) => Some(Binding::Texture(&targets.front)),
+            ("previous_depth", Surface::Layer(layer)) => further(targets, layer - 1, 0),
+            _ => Some(Binding::Buffer(
                 uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
-            ))
+            )),
         })?;
-        let (color, normal) = if back {
-            (&targets.back, &targets.scratch_normal)
-        } else {
-            (&targets.front, &targets.normal)
+        let (color, normal) = match surface {
+            Surface::Front => (&targets.front, &targets.normal),
+            Surface::Back => (&targets.back, &targets.scratch_normal),
+            Surface::Layer(layer) => {
+                let [depth, normal] = &targets.layers[layer as usize - 1];
+                (depth, normal)
+            }
         };
         let clear = |value: f64| wgpu::Operations {
             load: wgpu::LoadOp::Clear(wgpu::Color {
@@ -254,4 +309,10 @@ impl Renderer {
         draw.draw(0..vertices, 0..1);
         Ok(())
     }
+}
+
+/// Depth (0) or normal (1) of a further layer.
+fn further(targets: &DrawTargets, layer: u32, which: usize) -> Option<Binding<'_>> {
+    let layer = targets.layers.get((layer as usize).checked_sub(1)?)?;
+    Some(Binding::Texture(&layer[which]))
 }

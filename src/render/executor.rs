@@ -13,8 +13,8 @@ use crate::passes::desc::{PassDesc, Repeat, Run};
 use crate::passes::slot::{self, ENERGY_TERMS, Lifetime, Slot, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
-use crate::scene::facts::SceneFacts;
-use crate::scene::placement::LevelMapKey;
+use crate::scene::facts::{SceneFacts, Wanted};
+use crate::scene::placement::{LevelBox, LevelMapKey};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::{AccuracyStats, TimeStats};
 
@@ -32,11 +32,13 @@ impl Renderer {
     ) -> Result<RunResult, RenderError> {
         let buffers = self.prepare(resolved, facts, plan)?;
         let result = self.run_passes(facts, plan, missing, &buffers, cancel);
-        let targets = missing
+        let targets = missing.iter().map(slot::draw_target_bytes).max();
+        let slices = plan
+            .slots
             .iter()
-            .map(|key| slot::draw_target_bytes(key.texels))
-            .max();
+            .find(|s| s.name == slot_name(Slot::Slices));
         let peak_bytes = self.pool.peak_bytes()
+            + slices.map_or(0, |planned| planned.bytes)
             + targets.unwrap_or(0)
             + self.gpu.take_readback_peak()
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
@@ -46,6 +48,7 @@ impl Renderer {
             empty,
             queue_heads,
             indirect,
+            slices: _,
         } = buffers;
         for (name, buffer) in by_name {
             if name != slot_name(Slot::Geometry) && name != slot_name(Slot::LevelMaps) {
@@ -81,9 +84,11 @@ impl Renderer {
                 .collect::<Vec<_>>()
         };
         if !of(Repeat::LevelMap).is_empty() {
-            self.build_level_maps(facts, &of(Repeat::LevelMap), missing, buffers, &mut time_ms)?;
+            let passes = of(Repeat::LevelMap);
+            self.build_level_maps(facts, &passes, missing, buffers, cancel, &mut time_ms)?;
         }
         let mut accounts = Vec::new();
+        let mut plane_counts: Vec<Vec<[u32; 4]>> = Vec::new();
         for sun in 0..if of(Repeat::Sun).is_empty() {
             0
         } else {
@@ -91,6 +96,10 @@ impl Renderer {
         } {
             check_cancelled(cancel)?;
             accounts.extend(self.run_sun(facts, sun, &of(Repeat::Sun), buffers, &mut time_ms)?);
+            if let Some(buffer) = buffers.by_name.get(slot_name(Slot::PlaneCounts)) {
+                let bytes = Slot::PlaneCounts.bytes(facts);
+                plane_counts.push(readback::read(&self.gpu, buffer, bytes)?);
+            }
         }
         let (energy, warnings) = collect::energy(facts, &accounts);
         let estimate = of(Repeat::Frame);
@@ -110,12 +119,14 @@ impl Renderer {
             height: 0,
             layers: BTreeMap::new(),
             energy,
+            planes: collect::planes(facts, &plane_counts),
             accuracy,
             warnings,
             time_ms,
             peak_bytes: 0,
+            level_maps_built: u32::try_from(missing.len()).unwrap_or(u32::MAX),
         };
-        if facts.only_estimate {
+        if facts.wanted != Wanted::Frame {
             return Ok(result);
         }
         if let Some(camera) = facts.camera {
@@ -317,7 +328,7 @@ impl Renderer {
         if let (Some(key), true) = (&map.level_map, !facts.suns.is_empty()) {
             let arena = self.arena.as_ref().zip(self.level_maps.offset(key));
             if let Some((arena, offset)) = arena {
-                cosines = Some(self.read_normals(arena, offset, key)?);
+                cosines = Some(self.read_normals(arena, offset, key, facts.map_layer)?);
             }
         }
         let layer = collect::finish_map(facts, &map, values, cosines.as_deref())?;
@@ -325,14 +336,16 @@ impl Renderer {
         Ok(())
     }
 
-    /// Packed normals of a level map.
+    /// Packed normals of a layer of a level map.
     fn read_normals(
         &self,
         arena: &wgpu::Buffer,
         offset: u64,
         key: &LevelMapKey,
+        layer: u32,
     ) -> Result<Vec<u32>, GpuError> {
         let bytes = 4 * u64::from(key.texels) * u64::from(key.texels);
+        let first = offset + key.pyramid_bytes() + 4 * u64::from(key.normals_after(layer));
         let staging = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("normals"),
             size: bytes,
@@ -340,7 +353,7 @@ impl Renderer {
             mapped_at_creation: false,
         });
         let mut encoder = self.encoder("normals");
-        encoder.copy_buffer_to_buffer(arena, offset + key.bytes() - bytes, &staging, 0, bytes);
+        encoder.copy_buffer_to_buffer(arena, first, &staging, 0, bytes);
         self.gpu.queue.submit([encoder.finish()]);
         readback::read(&self.gpu, &staging, bytes)
     }
@@ -351,18 +364,23 @@ impl Renderer {
         passes: &[&'static PassDesc],
         missing: &[LevelMapKey],
         buffers: &FrameBuffers,
+        cancel: &CancellationToken,
         time_ms: &mut TimeStats,
     ) -> Result<(), RenderError> {
+        let boxes: BTreeMap<&LevelMapKey, &LevelBox> = facts
+            .suns
+            .iter()
+            .flat_map(|sun| sun.boxes.iter().flatten())
+            .map(|level_box| (&level_box.key, level_box))
+            .collect();
         for key in missing {
+            check_cancelled(cancel)?;
             let started = Recording::start(time_ms);
-            let found = facts
-                .suns
-                .iter()
-                .flat_map(|sun| sun.boxes.iter().flatten())
-                .find(|b| &b.key == key);
-            let (Some(level_box), Some(offset), Some(geometry)) =
-                (found, self.level_maps.offset(key), self.geometry.as_ref())
-            else {
+            let (Some(level_box), Some(offset), Some(geometry)) = (
+                boxes.get(key),
+                self.level_maps.offset(key),
+                self.geometry.as_ref(),
+            ) else {
                 continue;
             };
             let place = geometry.place(&key.mesh);
@@ -372,13 +390,14 @@ impl Renderer {
                 first_triangle: place.first_triangle,
                 triangles: place.triangles,
             };
-            let targets = self.draw_targets(key.texels);
+            let targets = self.draw_targets(key);
             let mut encoder = self.encoder("level map");
             for pass in passes {
                 self.record(&mut encoder, pass, facts, run, buffers, Some(&targets))?;
                 self.submit_if_timed(pass, &mut encoder, time_ms)?;
             }
             self.submit(encoder, started, time_ms)?;
+            self.level_maps.built(key);
         }
         Ok(())
     }

@@ -6,7 +6,9 @@ mod commands;
 mod executor;
 mod geometry;
 mod self_check;
+mod slices;
 mod tune;
+mod warm;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -18,8 +20,8 @@ use crate::frame::Frame;
 use crate::gpu::shader::ShaderSources;
 use crate::gpu::timing::Timing;
 use crate::gpu::{BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
-use crate::level_map::LevelMapCache;
-use crate::passes::{Slot, shaders};
+use crate::level_map::{ArenaError, LevelMapCache};
+use crate::passes::{self, Repeat, Slot, shaders};
 use crate::plan::{self, Cached, Plan};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
@@ -75,8 +77,11 @@ impl From<plan::PlanError> for RenderError {
 /// Idle polls (one a second) after which buffers kept for the next frame are given up.
 const IDLE_POLLS: u32 = 5;
 
-/// Pass, entry point, whether it attenuates, whether its flux sums are wide.
-type KernelKey = (&'static str, &'static str, bool, bool);
+/// Pass, entry point, whether it attenuates, whether its flux sums are wide, whether meshes get their light by planes.
+type KernelKey = (&'static str, &'static str, bool, bool, bool);
+
+/// Fragment entry point, and whether the farthest fragment stays instead of the nearest.
+type RasterKey = (&'static str, bool);
 
 /// Owns the GPU context and the caches; lives on the GPU thread.
 #[derive(Debug)]
@@ -86,7 +91,8 @@ pub struct Renderer {
     pool: BufferPool,
     timing: Timing,
     kernels: BTreeMap<KernelKey, Kernel>,
-    raster_kernels: BTreeMap<bool, RasterKernel>,
+    raster_kernels: BTreeMap<RasterKey, RasterKernel>,
+    slice_kernel: Option<RasterKernel>,
     level_maps: LevelMapCache,
     arena: Option<wgpu::Buffer>,
     geometry: Option<geometry::Geometry>,
@@ -115,8 +121,14 @@ impl Renderer {
         if let Some(folder) = &config.shader_dump {
             dump_shaders(&sources, folder)?;
         }
-        let arena_bytes =
-            (config.level_map_budget_mib << 20).min(gpu.limits.max_storage_buffer_binding_size);
+        let arena_bytes = config.level_map_budget_bytes().min(bindable_bytes(&gpu));
+        if arena_bytes < config.level_map_budget_bytes() {
+            tracing::warn!(
+                wanted_bytes = config.level_map_budget_bytes(),
+                arena_bytes,
+                "the device binds no more level maps at once"
+            );
+        }
         Ok(Self {
             timing: Timing::new(&gpu),
             gpu,
@@ -124,10 +136,11 @@ impl Renderer {
             pool: BufferPool::default(),
             kernels: BTreeMap::new(),
             raster_kernels: BTreeMap::new(),
+            slice_kernel: None,
             level_maps: LevelMapCache::new(arena_bytes),
             arena: None,
             geometry: None,
-            memory_budget_bytes: config.memory_budget_mib << 20,
+            memory_budget_bytes: config.memory_budget_bytes(),
             calibration: config.calibration.clone().unwrap_or_default(),
             idle_polls: 0,
             wide_sum_reruns: 0,
@@ -196,7 +209,11 @@ impl Renderer {
                 .map(|p| PassStats {
                     name: p.name.clone(),
                     reason: p.reason.clone(),
-                    runs: p.runs,
+                    runs: if builds_level_maps(&p.name) {
+                        run.level_maps_built
+                    } else {
+                        p.runs
+                    },
                     gpu_ms: gpu_times
                         .iter()
                         .find(|(name, _)| *name == p.name)
@@ -215,6 +232,7 @@ impl Renderer {
                 level_maps: cache_change(&cache_before, &self.level_maps.stats()),
             },
             energy: run.energy,
+            planes: run.planes,
             accuracy: run.accuracy,
             exposure: exposure(&facts, resolved),
             warnings: plan.warnings,
@@ -248,20 +266,34 @@ impl Renderer {
         let missing = self
             .level_maps
             .reserve(&plan::level_maps(facts))
-            .map_err(|e| RenderError::OverBudget {
-                what: "the scene's level maps (CAUSTICA_LEVEL_MAP_BUDGET_MIB)".to_owned(),
-                needed_bytes: e.needed_bytes,
-                budget_bytes: e.budget_bytes,
-            })?;
+            .map_err(|error| self.level_maps_over_budget(error))?;
         self.pool
             .begin_frame(self.memory_budget_bytes.saturating_sub(plan.peak_bytes));
         self.idle_polls = 0;
         self.timing.begin_frame();
         let result = self.execute(resolved, facts, plan, &missing, cancel);
-        if result.is_err() {
-            self.level_maps.forget(&missing);
+        // Maps that are whole stay, also those of a frame that was cancelled after them.
+        self.level_maps.forget_unbuilt();
+        if let Err(RenderError::Gpu(_)) = &result {
+            // Which buffers the device failed on is not known, so nothing that would outlive the frame is trusted.
+            self.level_maps.clear();
+            self.arena = None;
+            self.geometry = None;
         }
         result
+    }
+
+    fn level_maps_over_budget(&self, error: ArenaError) -> RenderError {
+        let limit = if error.budget_bytes < bindable_bytes(&self.gpu) {
+            "CAUSTICA_LEVEL_MAP_BUDGET_MIB"
+        } else {
+            "the device's limit for one binding"
+        };
+        RenderError::OverBudget {
+            what: format!("holding the scene's level maps at once ({limit})"),
+            needed_bytes: error.needed_bytes,
+            budget_bytes: error.budget_bytes,
+        }
     }
 
     /// Frees what is cached for a mesh.
@@ -308,17 +340,15 @@ impl Renderer {
                 budget_bytes: self.memory_budget_bytes,
             });
         }
-        let limit = self
-            .gpu
-            .limits
-            .max_storage_buffer_binding_size
-            .min(self.gpu.limits.max_buffer_size);
+        let limit = bindable_bytes(&self.gpu);
         for slot in &plan.slots {
-            if slot.bytes > limit {
+            // Slices are textures, each by itself small.
+            if slot.bytes > limit && slot.name != slot_name(Slot::Slices) {
                 return Err(RenderError::OverBudget {
                     what: format!(
-                        "buffer `{}` (the device's limit for one binding)",
-                        slot.name
+                        "buffer `{}` (the device's limit for one binding{})",
+                        slot.name,
+                        what_helps(plan, &slot.name)
                     ),
                     needed_bytes: slot.bytes,
                     budget_bytes: limit,
@@ -326,6 +356,17 @@ impl Renderer {
             }
         }
         Ok(())
+    }
+}
+
+/// What would make a buffer smaller, where it holds maps of many objects.
+fn what_helps(plan: &Plan, slot: &str) -> &'static str {
+    let holds_maps = ["flux", "irradiance", "coarse_irradiance"].contains(&slot);
+    let has_objects = plan.passes.iter().any(|pass| pass.name == "split");
+    if holds_maps && has_objects {
+        "; quality.level_of_detail gives small and far objects smaller maps, fewer quality.level_map_texels or quality.layers all of them"
+    } else {
+        ""
     }
 }
 
@@ -350,10 +391,28 @@ struct RunResult {
     height: u32,
     layers: BTreeMap<crate::scene::LayerName, crate::frame::Layer>,
     energy: Vec<crate::stats::EnergyAccount>,
+    planes: Vec<crate::stats::PlaneStats>,
     accuracy: Option<AccuracyStats>,
     warnings: Vec<Warning>,
     time_ms: TimeStats,
     peak_bytes: u64,
+    /// More than planned where maps that were cached had to make way and come back.
+    level_maps_built: u32,
+}
+
+/// Whether a pass runs once per level map that is built.
+fn builds_level_maps(pass: &str) -> bool {
+    let found = passes::ALL.into_iter().find(|desc| desc.name == pass);
+    found.is_some_and(|desc| desc.repeat == Repeat::LevelMap)
+}
+
+/// The largest buffer that shaders can bind whole, a multiple of 16 bytes.
+fn bindable_bytes(gpu: &GpuContext) -> u64 {
+    let limits = &gpu.limits;
+    let bytes = limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size);
+    bytes - bytes % 16
 }
 
 fn ms_since(start: Instant) -> f64 {

@@ -5,7 +5,7 @@ use tokio_util::sync::CancellationToken;
 use super::{RenderError, Renderer};
 use crate::plan::{self, WarmCache};
 use crate::scene::ResolvedScene;
-use crate::scene::facts::SceneFacts;
+use crate::scene::facts::{SceneFacts, Wanted};
 use crate::stats::{ChosenDials, Warning};
 use crate::tuning::choose::{self, Prospect};
 use crate::tuning::{cost, ladder};
@@ -152,7 +152,7 @@ impl Renderer {
         let mut rung = with_cells(resolved, cells);
         rung.scene.quality.estimate_error = true;
         let mut facts = SceneFacts::of(&rung)?;
-        facts.only_estimate = true;
+        facts.wanted = Wanted::Estimate;
         let plan = plan::plan_scene(&facts, self)?;
         let run = self.run(&rung, &facts, &plan, cancel)?;
         Ok(run.accuracy.and_then(|accuracy| accuracy.estimated_error))

@@ -95,6 +95,17 @@ pub struct CameraFacts {
     pub height: u32,
 }
 
+/// How much of a frame is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// All that the output asks for.
+    Frame,
+    /// Nothing but the light's own estimate of its error.
+    Estimate,
+    /// Nothing but the level maps, for frames to come.
+    LevelMaps,
+}
+
 /// What a scene boils down to.
 #[derive(Clone, Debug)]
 pub struct SceneFacts {
@@ -132,8 +143,10 @@ pub struct SceneFacts {
     pub layers: Vec<LayerName>,
     /// The receiver of an irradiance map.
     pub map_receiver: Option<Receiver>,
-    /// Whether nothing but the light's own estimate of its error is wanted.
-    pub only_estimate: bool,
+    /// Its layer, 0 the nearest along the light; of a view and on the floor 0.
+    pub map_layer: u32,
+    /// How much of the frame is wanted.
+    pub wanted: Wanted,
     /// Sky irradiance to be added to an irradiance map on the floor, W/m².
     pub map_sky_w_m2: [f64; 3],
     /// The dials.
@@ -186,13 +199,15 @@ impl SceneFacts {
             camera: None,
             layers: vec![LayerName::Irradiance],
             map_receiver: None,
-            only_estimate: false,
+            map_layer: 0,
+            wanted: Wanted::Frame,
             map_sky_w_m2: [0.0; 3],
             quality: scene.quality.clone(),
             warnings: Vec::new(),
             surface,
         };
         facts.want_output(&scene.output, scene.camera.as_ref());
+        facts.size_maps();
         facts.find_suns(resolved)?;
         facts.collect_warnings(&water.scattering_per_m);
         Ok(facts)
@@ -269,6 +284,7 @@ impl SceneFacts {
             }
             Output::IrradianceMap(map) => {
                 self.map_receiver = Some(map.receiver);
+                self.map_layer = map.layer;
                 let Some(floor) = &self.floor else { return };
                 if matches!(map.receiver, Receiver::Object(_)) {
                     return;
@@ -398,6 +414,30 @@ impl SceneFacts {
         }
     }
 
+    /// Says what placement by planes leaves out.
+    fn warn_of_planes(&mut self) {
+        let wet = self.wet_objects().count();
+        if !self.quality.has_planes() || self.suns.is_empty() {
+            return;
+        }
+        if wet > 1 {
+            let mut warning = Warning::new(
+                "planes_ignore_other_objects",
+                "planes know nothing of other objects: what one object stops lights the others all the same",
+            );
+            warning.pointer = Some("/quality/placement".to_owned());
+            self.warnings.push(warning);
+        }
+        if wet > 0 && self.quality.layers > 1 {
+            let mut warning = Warning::new(
+                "planes_light_the_first_layer",
+                "planes light what the light direction sees first; further layers stay dark",
+            );
+            warning.pointer = Some("/quality/layers".to_owned());
+            self.warnings.push(warning);
+        }
+    }
+
     fn collect_warnings(&mut self, scattering_per_m: &[f64; 3]) {
         if scattering_per_m.iter().any(|&b| b > 0.0) {
             let mut warning = Warning::new(
@@ -424,6 +464,7 @@ impl SceneFacts {
                 self.warnings.push(warning);
             }
         }
+        self.warn_of_planes();
         self.warn_of_coarse_cells();
         for sun in &self.suns {
             let finest_m =

@@ -6,6 +6,7 @@
 //! To add a field: put it into `types` with unit, range and default in its doc comment, its range into `ranges`, check it in
 //! `validate`, and run the tests, which tell where `openapi.yaml` has to follow.
 
+mod detail;
 pub mod error;
 pub mod facts;
 mod findings;
@@ -27,6 +28,6 @@ mod validate_output;
 pub mod window;
 
 pub use error::{Issue, IssueKind, SceneError};
-pub use quality::{Method, Placement, Quality};
+pub use quality::{Method, Placement, Quality, Slicing};
 pub use resolve::{ResolvedScene, resolve};
 pub use types::*;

@@ -22,6 +22,8 @@ pub struct ObjectFacts {
     pub wet: bool,
     /// Texels along each side of its level maps and irradiance maps.
     pub map_texels: u32,
+    /// Triangles of the mesh.
+    pub triangles: u32,
 }
 
 impl ObjectFacts {
@@ -57,6 +59,7 @@ impl ResolvedScene {
                     mesh: mesh.id.clone(),
                     wet: min.y < max_height_m,
                     map_texels: self.scene.quality.level_map_texels,
+                    triangles: u32::try_from(mesh.triangles.len()).unwrap_or(u32::MAX),
                 }
             })
             .collect()
@@ -103,13 +106,23 @@ impl LevelMapKey {
     /// a depth and a packed normal per texel.
     pub fn bytes(&self) -> u64 {
         let texels = u64::from(self.texels) * u64::from(self.texels);
-        let mut words = texels * (1 + 2 * u64::from(self.layers - 1));
+        self.pyramid_bytes() + 4 * texels * (1 + 2 * u64::from(self.layers - 1))
+    }
+
+    /// Bytes of the pyramid; the first layer's normals lie behind it.
+    pub fn pyramid_bytes(&self) -> u64 {
+        let mut words = 0;
         let mut side = u64::from(self.texels);
         while side > 0 {
             words += 2 * side * side;
             side /= 2;
         }
         4 * words
+    }
+
+    /// Words from the end of the pyramid to the packed normals of a layer; its depths lie texels² words before them.
+    pub fn normals_after(&self, layer: u32) -> u32 {
+        2 * layer * self.texels * self.texels
     }
 
     /// Levels of the pyramid, down to one texel.

@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::parse::integer;
-use super::ranges::{Layers, LevelMapTexels, MapTexels, PixelSamples, SplitLevels, WaterCells};
+use super::ranges::{
+    Layers, LevelMapTexels, MapTexels, PixelSamples, Planes, SplitLevels, WaterCells,
+};
 
 /// The dials that trade accuracy for time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -12,8 +14,15 @@ use super::ranges::{Layers, LevelMapTexels, MapTexels, PixelSamples, SplitLevels
 pub struct Quality {
     /// How light is carried to the receivers. Default `level_map`.
     pub method: Method,
-    /// Where on a mesh a beam ends. Default `hit`.
+    /// Where on a mesh a beam ends, for method `level_map`. Default `hit`.
     pub placement: Placement,
+    /// Which reference planes are used, for placement `planes`. Default `uniform`.
+    pub slicing: Slicing,
+    /// Planes that cut a mesh's box along the light, the thesis's n + 1, 2 … 1024. Default 51. Only placement `planes` and method
+    /// `volumetric` have any; both time and, of `volumetric`, memory grow with them.
+    #[serde(deserialize_with = "integer::<Planes, _>")]
+    #[schema(minimum = 2, maximum = 1024)]
+    pub planes: u32,
     /// Water cells along each side of a light's window, 2 … 2048. Default 256. The error falls with its square.
     #[serde(deserialize_with = "integer::<WaterCells, _>")]
     #[schema(minimum = 2, maximum = 2048)]
@@ -31,6 +40,11 @@ pub struct Quality {
     #[serde(deserialize_with = "integer::<Layers, _>")]
     #[schema(minimum = 1, maximum = 4)]
     pub layers: u32,
+    /// Texels of an object's maps per pixel of its size on the picture, 0 … 16: its level map and irradiance map then have the power
+    /// of two of texels at or above that, 16 … `level_map_texels`; what is outside the picture gets 16 and still casts its shadow.
+    /// Default 0: every object gets `level_map_texels`. Views only.
+    #[schema(minimum = 0, maximum = 16)]
+    pub level_of_detail: f64,
     /// How often beams that straddle receivers are halved, 0 … 8. Default 2. Only the parts that still straddle are halved on, so
     /// each further level about doubles the time for shadow edges and halves their width.
     #[serde(deserialize_with = "integer::<SplitLevels, _>")]
@@ -61,16 +75,31 @@ impl Default for Quality {
         Self {
             method: Method::LevelMap,
             placement: Placement::Hit,
+            slicing: Slicing::Uniform,
+            planes: 51,
             water_cells: 256,
             map_texels: 512,
             level_map_texels: 256,
             layers: 1,
+            level_of_detail: 0.0,
             split_levels: 2,
             target_error: None,
             time_budget_ms: None,
             estimate_error: false,
             pixel_samples: 1,
         }
+    }
+}
+
+impl Quality {
+    /// Whether light reaches meshes by planes, of either kind, instead of by hits.
+    pub fn has_planes(&self) -> bool {
+        self.is_volumetric() || self.placement == Placement::Planes
+    }
+
+    /// Whether every plane has an image of its own.
+    pub fn is_volumetric(&self) -> bool {
+        self.method == Method::Volumetric
     }
 }
 
@@ -81,6 +110,10 @@ pub enum Method {
     /// Beams between exact hits on floor and level maps (Tipprasert 2006).
     #[default]
     LevelMap,
+    /// What level maps are measured against (Tipprasert 2006, §5.2.1): every plane of a mesh has an image of its slice, drawn for each
+    /// frame, and a caustics map of all beams, which the slice masks. Takes memory for each plane. The floor gets what it gets with
+    /// placement `planes`; `placement` and `slicing` have no say.
+    Volumetric,
 }
 
 /// Where on a mesh a beam ends.
@@ -90,4 +123,19 @@ pub enum Placement {
     /// Rays are marched into the level map until they cross it.
     #[default]
     Hit,
+    /// Rays are cut with reference planes and accepted where the level map is within half a distance of planes (Tipprasert 2006,
+    /// §4.4). The more planes, the nearer to `hit`. Does not conserve energy, which the account shows, and objects cast no shadows
+    /// on each other.
+    Planes,
+}
+
+/// Which reference planes are used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Slicing {
+    /// All.
+    #[default]
+    Uniform,
+    /// Those near which the level map has a surface (Tipprasert 2006, §4.7.2): the same picture with fewer planes.
+    Smart,
 }

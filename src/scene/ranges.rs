@@ -84,6 +84,8 @@ pub const FIELD_OF_VIEW: Range = Range::new(0.1, 179.0, "degrees");
 /// `exposure_ev`.
 pub const EXPOSURE: Range = Range::new(-40.0, 40.0, "stops");
 
+/// `quality.level_of_detail`.
+pub const LEVEL_OF_DETAIL: Range = Range::new(0.0, 16.0, "texels per pixel");
 /// `quality.target_error`.
 pub const TARGET_ERROR: Range = Range::new(1e-4, 0.5, "");
 /// `quality.time_budget_ms`.
@@ -131,6 +133,10 @@ integers! {
     MapTexels = 16..=4096;
     /// `quality.layers`.
     Layers = 1..=4;
+    /// `output.layer`; that it lies below `quality.layers` is checked where those are known.
+    Layer = 0..=3;
+    /// `quality.planes`.
+    Planes = 2..=1024;
     /// `quality.split_levels`.
     SplitLevels = 0..=8;
     /// `quality.pixel_samples`.

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 
 use super::parse::{inner, integer, integer_of, optional_integer, rotation, tagged, wrong_type};
 use super::quality::Quality;
-use super::ranges::{Integer, LightIndex, MapSide, PngBits, ReceiverIndex, ViewSide};
+use super::ranges::{Integer, Layer, LightIndex, MapSide, PngBits, ReceiverIndex, ViewSide};
 use super::strict::carry;
 
 /// A scene: water, receivers, lights, a camera and what to make of them.
@@ -546,6 +546,10 @@ pub struct IrradianceMapOutput {
         skip_serializing_if = "Option::is_none"
     )]
     pub light: Option<u32>,
+    /// Which surface of the mesh along the light's direction under flat water, nearest first: 0 … `quality.layers` − 1. Mesh only;
+    /// default 0.
+    #[serde(default, deserialize_with = "integer::<Layer, _>")]
+    pub layer: u32,
     /// Whether skies count too. Default false.
     #[serde(default)]
     pub include_sky: bool,

@@ -207,8 +207,19 @@ fn quality(findings: &mut Findings, quality: &Quality) {
     let level_map_texels = quality.level_map_texels;
     findings.integer::<ranges::LevelMapTexels>("/quality/level_map_texels", level_map_texels);
     findings.integer::<ranges::Layers>("/quality/layers", quality.layers);
+    let detail = &ranges::LEVEL_OF_DETAIL;
+    findings.number("/quality/level_of_detail", quality.level_of_detail, detail);
     findings.integer::<ranges::SplitLevels>("/quality/split_levels", quality.split_levels);
     findings.integer::<ranges::PixelSamples>("/quality/pixel_samples", quality.pixel_samples);
+    findings.integer::<ranges::Planes>("/quality/planes", quality.planes);
+    let chosen = quality.target_error.is_some() || quality.time_budget_ms.is_some();
+    if chosen && quality.has_planes() {
+        findings.invalid(
+            "/quality/placement",
+            "target_error and time_budget_ms choose the dials of hits, not of planes",
+            "method `level_map` with placement `hit`, or dials of one's own",
+        );
+    }
     if let Some(target) = quality.target_error {
         findings.number("/quality/target_error", target, &ranges::TARGET_ERROR);
     }

@@ -15,6 +15,7 @@ pub(super) fn output(findings: &mut Findings, scene: &Scene, limits: &Limits) {
             findings.integer::<ranges::PngBits>("/output/png_bits", output.png_bits);
             findings.number("/output/exposure_ev", output.exposure_ev, &ranges::EXPOSURE);
             light(findings, scene, output);
+            layer(findings, scene, output);
             match output.receiver {
                 Receiver::Floor(_) => floor_map(findings, scene, output, limits),
                 Receiver::Object(index) => mesh_map(findings, scene, output, index, limits),
@@ -121,6 +122,22 @@ fn light(findings: &mut Findings, scene: &Scene, output: &IrradianceMapOutput) {
         ),
         (None, _) => {}
     }
+}
+
+fn layer(findings: &mut Findings, scene: &Scene, output: &IrradianceMapOutput) {
+    let layers = scene.quality.layers;
+    let accepted = match output.receiver {
+        Receiver::Floor(_) if output.layer > 0 => {
+            "0 or nothing: the floor has one surface".to_owned()
+        }
+        Receiver::Object(_) if output.layer >= layers => format!(
+            "below `quality.layers`, which is {layers}: 0 … {}",
+            layers.saturating_sub(1)
+        ),
+        _ => return,
+    };
+    let detail = format!("there is no layer {}", output.layer);
+    findings.invalid("/output/layer", detail, accepted);
 }
 
 fn mesh_map(

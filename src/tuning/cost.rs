@@ -40,7 +40,10 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
             )
     });
     match pass {
-        "level_map" | "level_map_pyramid" => level_texels,
+        // Front and back, and once more for each further layer.
+        "level_map" | "level_map_pyramid" => {
+            level_texels * 0.5 * f64::from(1 + facts.quality.layers)
+        }
         "surface" => cells * (1.0 + waves),
         "beams" => cells,
         // A ray looks at every receiver.

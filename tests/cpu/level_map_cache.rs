@@ -1,6 +1,6 @@
 //! The level-map cache and its arena: who stays, who goes, and that ranges never overlap.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use caustica::level_map::{Arena, LevelMapCache};
 use caustica::scene::placement::LevelMapKey;
@@ -14,6 +14,21 @@ fn key(mesh: &str, texels: u32) -> LevelMapKey {
     }
 }
 
+/// What a frame does: reserves, and builds what is missing.
+fn frame(cache: &mut LevelMapCache, keys: &[&LevelMapKey]) -> Vec<LevelMapKey> {
+    let missing = cache.reserve(keys).unwrap();
+    for key in &missing {
+        cache.built(key);
+    }
+    missing
+}
+
+/// Hits, misses and evictions so far.
+fn counts(cache: &LevelMapCache) -> (u64, u64, u64) {
+    let stats = cache.stats();
+    (stats.hits, stats.misses, stats.evictions)
+}
+
 /// Bytes of a map of 16 texels a side: 4 · (16² + 2 · (256 + 64 + 16 + 4 + 1)).
 const SMALL: u64 = 4 * (256 + 2 * 341);
 
@@ -24,11 +39,24 @@ fn a_map_takes_a_pyramid_and_normals() {
 }
 
 #[test]
+fn a_further_layer_takes_a_depth_and_a_normal_per_texel() {
+    let layered = LevelMapKey {
+        layers: 3,
+        ..key("a", 16)
+    };
+    assert_eq!(layered.bytes(), SMALL + 2 * 8 * 256);
+    assert_eq!(layered.pyramid_bytes(), 4 * 2 * 341);
+    // The last layer's normals end the map.
+    let last = layered.pyramid_bytes() + 4 * u64::from(layered.normals_after(2));
+    assert_eq!(last + 4 * 256, layered.bytes());
+}
+
+#[test]
 fn what_is_there_is_a_hit() {
     let mut cache = LevelMapCache::new(4 * SMALL);
     let a = key("a", 16);
-    assert_eq!(cache.reserve(&[&a]).unwrap(), std::slice::from_ref(&a));
-    assert!(cache.reserve(&[&a]).unwrap().is_empty());
+    assert_eq!(frame(&mut cache, &[&a]), std::slice::from_ref(&a));
+    assert!(frame(&mut cache, &[&a]).is_empty());
     let stats = cache.stats();
     assert_eq!((stats.hits, stats.misses, stats.evictions), (1, 1, 0));
     assert_eq!((stats.entries, stats.bytes), (1, SMALL));
@@ -42,7 +70,7 @@ fn other_meshes_directions_and_sizes_are_other_maps() {
     turned.direction = [1, -(1 << 20), 0];
     let keys = [key("a", 16), key("b", 16), key("a", 32), turned];
     let all: Vec<&LevelMapKey> = keys.iter().collect();
-    assert_eq!(cache.reserve(&all).unwrap(), keys);
+    assert_eq!(frame(&mut cache, &all), keys);
     let mut offsets: Vec<u64> = keys.iter().map(|k| cache.offset(k).unwrap()).collect();
     offsets.sort_unstable();
     offsets.dedup();
@@ -53,22 +81,21 @@ fn other_meshes_directions_and_sizes_are_other_maps() {
 fn the_one_used_longest_ago_goes_first() {
     let mut cache = LevelMapCache::new(2 * SMALL);
     let (a, b, c) = (key("a", 16), key("b", 16), key("c", 16));
-    cache.reserve(&[&a]).unwrap();
-    cache.reserve(&[&b]).unwrap();
-    cache.reserve(&[&a]).unwrap();
-    cache.reserve(&[&c]).unwrap();
+    for used in [&a, &b, &a, &c] {
+        frame(&mut cache, &[used]);
+    }
     assert!(cache.contains(&a) && !cache.contains(&b) && cache.contains(&c));
-    assert_eq!(cache.stats().evictions, 1);
+    assert_eq!(counts(&cache), (1, 3, 1));
 }
 
 #[test]
 fn what_the_frame_needs_is_never_evicted() {
     let mut cache = LevelMapCache::new(2 * SMALL);
     let (a, b, c) = (key("a", 16), key("b", 16), key("c", 16));
-    cache.reserve(&[&a]).unwrap();
-    cache.reserve(&[&b]).unwrap();
+    frame(&mut cache, &[&a]);
+    frame(&mut cache, &[&b]);
     // `a` is the oldest, but this frame needs it.
-    assert_eq!(cache.reserve(&[&a, &c]).unwrap(), std::slice::from_ref(&c));
+    assert_eq!(frame(&mut cache, &[&a, &c]), std::slice::from_ref(&c));
     assert!(cache.contains(&a) && cache.contains(&c) && !cache.contains(&b));
 }
 
@@ -76,14 +103,43 @@ fn what_the_frame_needs_is_never_evicted() {
 fn more_than_the_budget_is_an_error_with_figures_and_changes_nothing() {
     let mut cache = LevelMapCache::new(2 * SMALL);
     let (a, b, c) = (key("a", 16), key("b", 16), key("c", 16));
-    cache.reserve(&[&a]).unwrap();
+    frame(&mut cache, &[&a]);
+    let before = cache.stats();
     let error = cache.reserve(&[&a, &b, &c]).unwrap_err();
     assert_eq!(error.needed_bytes, 3 * SMALL);
     assert_eq!(error.budget_bytes, 2 * SMALL);
     let text = error.to_string();
     assert!(text.contains(&(3 * SMALL).to_string()), "{text}");
     assert!(cache.contains(&a) && !cache.contains(&b));
-    assert!(cache.reserve(&[&a]).unwrap().is_empty());
+    assert_eq!(cache.stats(), before);
+    assert!(frame(&mut cache, &[&a]).is_empty());
+}
+
+#[test]
+fn a_budget_of_nothing_holds_nothing() {
+    let mut cache = LevelMapCache::new(0);
+    let error = cache.reserve(&[&key("a", 16)]).unwrap_err();
+    assert_eq!((error.needed_bytes, error.budget_bytes), (SMALL, 0));
+    assert!(cache.reserve(&[]).unwrap().is_empty());
+}
+
+#[test]
+fn a_map_that_is_needed_twice_is_built_once() {
+    let mut cache = LevelMapCache::new(2 * SMALL);
+    let (a, b) = (key("a", 16), key("b", 16));
+    assert_eq!(
+        frame(&mut cache, &[&a, &b, &a, &b, &a]),
+        [a.clone(), b.clone()]
+    );
+    assert!(frame(&mut cache, &[&b, &b]).is_empty());
+    assert_eq!(counts(&cache), (1, 2, 0));
+    assert_eq!(cache.stats().bytes, 2 * SMALL);
+    // No range has been lost on the way.
+    cache.forget_mesh("a");
+    cache.forget_mesh("b");
+    let whole = [key("c", 16), key("d", 16)];
+    assert_eq!(frame(&mut cache, &[&whole[0], &whole[1]]).len(), 2);
+    assert_eq!(cache.stats().evictions, 0);
 }
 
 #[test]
@@ -95,47 +151,108 @@ fn the_whole_budget_can_be_used() {
     assert_eq!(cache.stats().bytes, 3 * SMALL);
 }
 
-#[test]
-fn pieces_do_not_keep_a_map_out_that_fits() {
-    // Four small ones, of which the frame keeps the second: no free range is long enough for a large one beside it.
-    let large = key("large", 32);
-    let mut cache = LevelMapCache::new(large.bytes() + 2 * SMALL);
-    let small: Vec<LevelMapKey> = (0..6).map(|i| key(&format!("s{i}"), 16)).collect();
-    for k in &small {
-        let _ = cache.reserve(&[k]);
-    }
-    let pinned = small
-        .iter()
-        .filter(|k| cache.contains(k))
-        .max_by_key(|k| cache.offset(k).unwrap().min(4 * SMALL))
-        .unwrap();
-    let missing = cache.reserve(&[pinned, &large]).unwrap();
-    assert!(missing.contains(&large));
-    assert!(cache.contains(pinned) && cache.contains(&large));
+/// A full cache of eight small maps side by side. When the fifth is kept, no free range takes `large`, though there is room.
+fn fragmented(large: &LevelMapKey) -> (LevelMapCache, Vec<LevelMapKey>) {
+    assert!(4 * SMALL < large.bytes() && large.bytes() < 6 * SMALL);
+    let mut cache = LevelMapCache::new(8 * SMALL);
+    let small: Vec<LevelMapKey> = (0..8).map(|i| key(&format!("s{i}"), 16)).collect();
+    let all: Vec<&LevelMapKey> = small.iter().collect();
+    frame(&mut cache, &all);
+    assert_eq!(cache.offset(&small[4]), Some(4 * SMALL));
+    (cache, small)
 }
 
 #[test]
-fn forgotten_maps_are_missing_again() {
+fn pieces_do_not_keep_a_map_out_that_fits() {
+    let large = key("large", 32);
+    let (mut cache, small) = fragmented(&large);
+    let kept = &small[4];
+    let before = counts(&cache);
+    let missing = cache.reserve(&[kept, &large]).unwrap();
+    // What the frame had already is built again, and the frame is told.
+    assert_eq!(missing.len(), 2);
+    assert!(missing.contains(kept) && missing.contains(&large));
+    assert!(!cache.contains(kept) && !cache.contains(&large));
+    for key in &missing {
+        cache.built(key);
+    }
+    assert!(cache.contains(kept) && cache.contains(&large));
+    // Eight made way, the kept one among them; it was no hit.
+    assert_eq!(counts(&cache), (before.0, before.1 + 2, before.2 + 8));
+    assert_eq!(cache.stats().bytes, SMALL + large.bytes());
+    // The next frame finds both.
+    assert!(frame(&mut cache, &[&large, kept]).is_empty());
+    assert_eq!(counts(&cache), (before.0 + 2, before.1 + 2, before.2 + 8));
+}
+
+#[test]
+fn a_frame_that_moves_what_it_had_counts_every_map_once() {
+    let large = key("large", 32);
+    let (mut cache, small) = fragmented(&large);
+    let new = key("new", 16);
+    let before = counts(&cache);
+    // `new` finds room at once; that it is moved again when `large` does not is nobody's business.
+    let missing = frame(&mut cache, &[&new, &small[4], &large]);
+    assert_eq!(missing.len(), 3);
+    assert_eq!(counts(&cache), (before.0, before.1 + 3, before.2 + 8));
+}
+
+#[test]
+fn what_was_reserved_and_not_built_is_not_there() {
     let mut cache = LevelMapCache::new(4 * SMALL);
     let (a, b) = (key("a", 16), key("b", 16));
-    cache.reserve(&[&a, &b]).unwrap();
-    cache.forget(std::slice::from_ref(&a));
-    assert!(!cache.contains(&a) && cache.contains(&b));
-    assert_eq!(cache.stats().bytes, SMALL);
     assert_eq!(cache.reserve(&[&a]).unwrap(), std::slice::from_ref(&a));
-    cache.forget(&[key("never", 16)]);
-    assert_eq!(cache.stats().entries, 2);
+    assert!(!cache.contains(&a));
+    // Whoever forgets to forget builds it all the same, and no range is lost.
+    assert_eq!(
+        cache.reserve(&[&a, &b]).unwrap(),
+        [a.clone(), b.clone()],
+        "not built"
+    );
+    cache.built(&a);
+    assert!(cache.contains(&a) && !cache.contains(&b));
+    // The frame breaks off: what is whole stays.
+    cache.forget_unbuilt();
+    assert!(cache.contains(&a) && cache.offset(&b).is_none());
+    assert_eq!(counts(&cache), (0, 1, 0));
+    assert_eq!((cache.stats().entries, cache.stats().bytes), (1, SMALL));
+    cache.built(&b);
+    cache.built(&a);
+    assert!(!cache.contains(&b), "built without a place");
+    assert_eq!(counts(&cache), (0, 1, 0), "built once");
+    assert_eq!(frame(&mut cache, &[&b]), std::slice::from_ref(&b));
+}
+
+#[test]
+fn a_frame_that_breaks_off_leaves_room_for_all() {
+    let mut cache = LevelMapCache::new(2 * SMALL);
+    for round in 0..10 {
+        let (a, b) = (key(&format!("a{round}"), 16), key(&format!("b{round}"), 16));
+        assert_eq!(cache.reserve(&[&a, &b]).unwrap().len(), 2);
+        cache.forget_unbuilt();
+        assert_eq!(cache.stats().entries, 0);
+    }
+    assert_eq!(counts(&cache), (0, 0, 0));
 }
 
 #[test]
 fn a_forgotten_mesh_takes_all_its_maps() {
     let mut cache = LevelMapCache::new(64 * SMALL);
     let (a, larger, b) = (key("a", 16), key("a", 32), key("b", 16));
-    cache.reserve(&[&a, &larger, &b]).unwrap();
+    frame(&mut cache, &[&a, &larger, &b]);
     cache.forget_mesh("a");
     assert!(!cache.contains(&a) && !cache.contains(&larger) && cache.contains(&b));
+    assert_eq!(cache.stats().bytes, SMALL);
+    cache.forget_mesh("never");
+    assert_eq!(frame(&mut cache, &[&a]), std::slice::from_ref(&a));
+    assert_eq!(
+        counts(&cache),
+        (0, 4, 0),
+        "to be deleted is not to make way"
+    );
     cache.clear();
-    assert_eq!(cache.stats().bytes, 0);
+    assert_eq!((cache.stats().entries, cache.stats().bytes), (0, 0));
+    assert!(!cache.contains(&b));
 }
 
 /// A small generator, the same everywhere.
@@ -196,39 +313,79 @@ fn the_arena_agrees_with_a_plain_model() {
     assert_eq!(arena, Arena::new(SIZE));
 }
 
+/// A cache as it should be, the plain way: which maps are there, and when each was used.
+#[derive(Default)]
+struct Model {
+    used: BTreeMap<LevelMapKey, u64>,
+    hits: u64,
+    misses: u64,
+}
+
 #[test]
 fn the_cache_holds_what_was_asked_for_whatever_went_before() {
     const BUDGET: u64 = 200_000;
     let mut random = Random(3);
     let mut cache = LevelMapCache::new(BUDGET);
-    for round in 0..3000 {
-        let mut keys: Vec<LevelMapKey> = (0..1 + random.below(4))
+    let mut model = Model::default();
+    let mut moved = 0;
+    for round in 0..6000 {
+        let keys: Vec<LevelMapKey> = (0..1 + random.below(5))
             .map(|_| key(&format!("m{}", random.below(12)), 16 << random.below(3)))
             .collect();
-        keys.sort();
-        keys.dedup();
-        let needed: u64 = keys.iter().map(LevelMapKey::bytes).sum();
-        let before: Vec<bool> = keys.iter().map(|k| cache.contains(k)).collect();
+        let distinct: BTreeSet<&LevelMapKey> = keys.iter().collect();
+        let needed: u64 = distinct.iter().map(|k| k.bytes()).sum();
+        let there: BTreeSet<&LevelMapKey> = distinct
+            .iter()
+            .copied()
+            .filter(|k| cache.contains(k))
+            .collect();
+        for k in &there {
+            assert!(model.used.contains_key(k), "round {round}: never built");
+        }
         let all: Vec<&LevelMapKey> = keys.iter().collect();
         let result = cache.reserve(&all);
         assert_eq!(result.is_err(), needed > BUDGET, "round {round}");
         let Ok(missing) = result else { continue };
-        for (k, was_there) in keys.iter().zip(before) {
-            assert!(cache.contains(k));
-            assert!(was_there || missing.contains(k), "round {round}: not built");
+        let built: BTreeSet<&LevelMapKey> = missing.iter().collect();
+        assert_eq!(built.len(), missing.len(), "round {round}: built twice");
+        // Either what was there is used, or all is built anew.
+        let expected: BTreeSet<&LevelMapKey> = distinct.difference(&there).copied().collect();
+        if built != expected {
+            assert_eq!(built, distinct, "round {round}");
+            moved += 1;
         }
-        let mut ranges: Vec<(u64, u64)> = keys
-            .iter()
-            .map(|k| (cache.offset(k).unwrap(), k.bytes()))
+        model.hits += (distinct.len() - built.len()) as u64;
+        // Now and then a frame breaks off half-way.
+        let breaks_off = random.below(7) == 0;
+        let whole = missing.len() / if breaks_off { 2 } else { 1 };
+        for k in &missing[..whole] {
+            cache.built(k);
+            model.misses += 1;
+        }
+        cache.forget_unbuilt();
+        for k in &distinct {
+            let lost = missing[whole..].contains(k);
+            assert_eq!(cache.contains(k), !lost, "round {round}");
+            assert_eq!(cache.offset(k).is_some(), !lost, "round {round}");
+            model.used.insert((*k).clone(), round);
+        }
+        // Nothing overlaps, and bytes are what is held.
+        let mut ranges: Vec<(u64, u64)> = model
+            .used
+            .keys()
+            .filter_map(|k| cache.offset(k).map(|offset| (offset, k.bytes())))
             .collect();
         ranges.sort_unstable();
         assert!(ranges.windows(2).all(|w| w[0].0 + w[0].1 <= w[1].0));
-        assert!(
-            ranges
-                .iter()
-                .all(|(offset, bytes)| offset + bytes <= BUDGET)
-        );
-        assert!(cache.stats().bytes <= BUDGET);
+        assert!(ranges.iter().all(|(at, bytes)| at + bytes <= BUDGET));
+        let stats = cache.stats();
+        assert_eq!(stats.entries, ranges.len() as u64, "round {round}");
+        assert_eq!(stats.bytes, ranges.iter().map(|r| r.1).sum::<u64>());
+        assert_eq!((stats.hits, stats.misses), (model.hits, model.misses));
+        // Every map that was built is there, or has made way.
+        assert_eq!(stats.misses, stats.entries + stats.evictions);
     }
-    assert!(cache.stats().evictions > 0 && cache.stats().hits > 0);
+    let (hits, misses, evictions) = counts(&cache);
+    println!("{hits} hits, {misses} misses, {evictions} evictions, {moved} frames moved theirs");
+    assert!(hits > 0 && evictions > 0 && moved > 0);
 }

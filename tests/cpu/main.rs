@@ -22,6 +22,7 @@ mod lamps;
 mod level_map_cache;
 mod mesh_hierarchy;
 mod mesh_obj;
+mod mesh_shapes;
 mod mesh_store;
 mod metrics;
 mod mutants;

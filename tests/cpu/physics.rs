@@ -12,6 +12,7 @@ use caustica::physics::fresnel::{
 use caustica::physics::refraction::{
     direction_to_light, normal_from_slope, reflect_direction, refract_direction,
 };
+use caustica::physics::slicing::{plane_depth, plane_of_depth};
 use caustica::physics::turns::sin_cos_turns;
 use glam::DVec3;
 
@@ -396,4 +397,38 @@ fn the_share_of_a_cone_is_the_sum_over_its_directions() {
     // The hemisphere of a dry plane, and water's cone on a wall (about a fifth).
     assert!((cone_share(0.0, 1.0) - 0.5).abs() < 1e-12);
     assert!((cone_share(0.0, 0.5628) - 0.2).abs() < 0.02);
+}
+
+// Tipprasert 2006, eq. 4-6 … 4-9 and 4-15: n slices of a box of height h have n + 1 planes h/n apart, each accepts within h/2n.
+#[test]
+fn every_depth_belongs_to_the_plane_within_half_a_distance() {
+    let (top, bottom) = (-0.7, 2.3);
+    for planes in [2.0, 3.0, 50.0, 1024.0] {
+        let distance = (bottom - top) / (planes - 1.0);
+        near(plane_depth(top, bottom, planes, 0.0), top, 1e-15);
+        near(
+            plane_depth(top, bottom, planes, planes - 1.0),
+            bottom,
+            1e-15,
+        );
+        for i in 0..=1000 {
+            let s = top + (bottom - top) * f64::from(i) / 1000.0;
+            let plane = plane_of_depth(top, bottom, planes, s);
+            assert_eq!(plane, plane.round());
+            let off = (s - plane_depth(top, bottom, planes, plane)).abs();
+            assert!(
+                off <= 0.5 * distance * (1.0 + 1e-9),
+                "{s}: {off} of {distance}"
+            );
+        }
+        // Beyond the box, as far as it may be, the outermost planes.
+        assert_eq!(plane_of_depth(top, bottom, planes, top - 9.0), 0.0);
+        assert_eq!(
+            plane_of_depth(top, bottom, planes, bottom + 9.0),
+            planes - 1.0
+        );
+    }
+    // Half way the interval of the next plane begins.
+    assert_eq!(plane_of_depth(0.0, 4.0, 5.0, 1.5), 2.0);
+    assert_eq!(plane_of_depth(0.0, 4.0, 5.0, 1.5 - 1e-12), 1.0);
 }

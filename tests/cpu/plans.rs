@@ -77,6 +77,8 @@ fn pool_with(changes: &[(&str, Value)]) -> Plan {
 }
 
 const LEVEL_MAP_PASSES: [&str; 2] = ["level_map", "level_map_pyramid"];
+/// What places light on meshes by planes.
+const PLANE_PASSES: [&str; 3] = ["depth_profile", "planes", "volumetric"];
 const CAMERA_PASSES: [&str; 3] = ["camera_hits", "camera_irradiance", "shade"];
 const SUN_PASSES: [&str; 7] = [
     "surface",
@@ -130,8 +132,13 @@ fn no_plan_is_left_without_its_scene() {
 fn a_full_scene_needs_every_pass() {
     let plan = pool_with(&[("quality", json!({ "estimate_error": true }))]);
     let all: Vec<&str> = passes::ALL.iter().map(|pass| pass.name).collect();
-    assert_eq!(names(&plan), all);
-    assert!(plan.absent.is_empty(), "{:?}", plan.absent);
+    let needed: Vec<&str> = all
+        .into_iter()
+        .filter(|name| !PLANE_PASSES.contains(name))
+        .collect();
+    assert_eq!(names(&plan), needed);
+    let absent: Vec<&str> = plan.absent.iter().map(|pass| pass.name.as_str()).collect();
+    assert_eq!(absent, PLANE_PASSES);
     assert!(plan.passes.iter().all(|pass| !pass.reason.is_empty()));
 }
 
@@ -278,6 +285,108 @@ fn equal_meshes_under_one_sun_share_a_level_map() {
 }
 
 #[test]
+fn layers_multiply_the_maps_of_objects() {
+    let plan = |layers: u32| pool_with(&[("quality", json!({ "layers": layers }))]);
+    let (one, three) = (plan(1), plan(3));
+    let bytes = |plan: &Plan, name: &str| plan.slots.iter().find(|s| s.name == name).unwrap().bytes;
+    let map = 256 * 256;
+    let more = |name: &str| bytes(&three, name) - bytes(&one, name);
+    assert_eq!(more("flux"), 2 * 8 * 3 * map);
+    assert_eq!(more("irradiance"), 2 * 12 * map);
+    assert_eq!(more("level_map_targets"), 2 * 8 * map);
+    let level_map = three.passes.iter().find(|p| p.name == "level_map").unwrap();
+    assert!(
+        level_map.reason.contains("in 3 layers"),
+        "{}",
+        level_map.reason
+    );
+    let irradiance = three
+        .passes
+        .iter()
+        .find(|p| p.name == "irradiance")
+        .unwrap();
+    assert!(
+        irradiance.reason.contains("3 layers each"),
+        "{}",
+        irradiance.reason
+    );
+}
+
+/// Boxes in a row away from the camera, one beside its picture, and one behind it.
+fn row_of_boxes(detail: f64) -> Value {
+    let mut scene = pool();
+    let boxes = [
+        [0.0, 0.0],
+        [0.0, -6.0],
+        [0.0, -30.0],
+        [60.0, -30.0],
+        [0.0, 20.0],
+    ];
+    scene["objects"] = boxes
+        .iter()
+        .map(|[x, z]| json!({ "mesh": "box.obj", "translation_m": [x, -1, z] }))
+        .collect();
+    scene["quality"] = json!({ "level_of_detail": detail });
+    scene["output"] = json!({ "kind": "view", "width": 480, "height": 320 });
+    scene["camera"] = json!({ "position_m": [0, 2, 4], "target_m": [0, -1, -2] });
+    scene
+}
+
+#[test]
+fn maps_go_by_the_size_on_the_picture() {
+    let sizes = |detail: f64| -> Vec<u32> {
+        let facts = SceneFacts::of(&scene_files::scene(row_of_boxes(detail))).unwrap();
+        let sizes: Vec<u32> = facts.objects.iter().map(|o| o.map_texels).collect();
+        for (object, &texels) in sizes.iter().enumerate() {
+            assert_eq!(facts.detail_of(object), f64::from(texels) / 256.0);
+        }
+        sizes
+    };
+    assert_eq!(sizes(0.0), [256; 5], "it is off unless asked for");
+    let one = sizes(1.0);
+    println!("{one:?}");
+    assert!(
+        one[0] >= 128 && one[0] > one[1] && one[1] > one[2],
+        "{one:?}"
+    );
+    assert_eq!(
+        one[3..],
+        [16, 16],
+        "beside the picture and behind the camera"
+    );
+    let two = sizes(2.0);
+    for (one, two) in one[..3].iter().zip(&two) {
+        assert_eq!((2 * one).min(256), *two, "{two:?}");
+    }
+    let plan = planned(&scene_files::scene(row_of_boxes(1.0)));
+    for name in ["level_map", "irradiance"] {
+        let reason = &plan.passes.iter().find(|p| p.name == name).unwrap().reason;
+        assert!(
+            reason.contains("with smaller maps by quality.level_of_detail"),
+            "{reason}"
+        );
+    }
+}
+
+#[test]
+fn objects_maps_are_finished_in_one_dispatch() {
+    let steps = |count: usize| {
+        let mut scene = pool();
+        let place = |i: usize| json!([i as f64 * 0.1, -1, 0]);
+        scene["objects"] = (0..count)
+            .map(|i| json!({ "mesh": "box.obj", "translation_m": place(i), "scale": 0.1 }))
+            .collect();
+        let facts = SceneFacts::of(&scene_files::scene(scene)).unwrap();
+        let run = passes::desc::Run::Sun {
+            index: 0,
+            wide_sums: false,
+        };
+        (passes::irradiance::PASS.steps)(&facts, run).len()
+    };
+    assert_eq!((steps(0), steps(1), steps(20)), (1, 2, 2));
+}
+
+#[test]
 fn the_peak_is_the_sum_of_the_slots() {
     for name in scene_files::names() {
         let plan = planned(&scene_files::load(&name, &[]));
@@ -338,5 +447,107 @@ fn scenes_are_fast_with_narrow_sums_and_extremes_are_exact_with_wide_ones() {
             passes::light::needs_wide_sums(&facts, 0),
             "{cells} cells, {side}²"
         );
+    }
+}
+
+/// Bytes of a slot of a plan.
+fn bytes_of(plan: &Plan, slot: &str) -> Option<u64> {
+    let found = plan.slots.iter().find(|s| s.name == slot);
+    found.map(|s| s.bytes)
+}
+
+fn reason_of(plan: &Plan, pass: &str) -> String {
+    let there = plan.passes.iter().map(|p| (&p.name, &p.reason));
+    let absent = plan.absent.iter().map(|p| (&p.name, &p.reason));
+    let found = there.chain(absent).find(|(name, _)| *name == pass);
+    found.unwrap().1.clone()
+}
+
+#[test]
+fn planes_are_in_where_they_are_asked_for() {
+    let hit = pool_with(&[]);
+    for pass in PLANE_PASSES {
+        assert_eq!(reason_of(&hit, pass), "quality.placement is hit");
+    }
+    assert_eq!(bytes_of(&hit, "plane_lists"), None);
+    let quality = json!({ "placement": "planes", "planes": 17 });
+    let planes = pool_with(&[("quality", quality)]);
+    assert!(names(&planes).contains(&"depth_profile"));
+    assert_eq!(
+        reason_of(&planes, "planes"),
+        "1 object under water, cut by 17 planes"
+    );
+    assert_eq!(
+        reason_of(&planes, "depth_profile"),
+        "all 17 planes are used"
+    );
+    assert!(is_absent(&planes, "volumetric"));
+    let quality = json!({ "placement": "planes", "planes": 17, "slicing": "smart" });
+    let smart = pool_with(&[("quality", quality)]);
+    let reason = reason_of(&smart, "depth_profile");
+    assert_eq!(
+        reason,
+        "of 17 planes those without a surface near them are left out"
+    );
+    let dry = pool_with(&[
+        ("quality", json!({ "placement": "planes" })),
+        ("objects", json!([])),
+    ]);
+    assert_eq!(reason_of(&dry, "planes"), "no object is under water");
+}
+
+#[test]
+fn slices_take_memory_for_each_plane_and_level_maps_do_not() {
+    let with = |method: &str, planes: u32| {
+        let quality = json!({ "method": method, "placement": "planes", "planes": planes, "level_map_texels": 128 });
+        pool_with(&[("quality", quality)])
+    };
+    let image = 4 * 128 * 128;
+    for planes in [2, 50, 100] {
+        let plan = with("volumetric", planes);
+        // One depth for all of them.
+        let slices = bytes_of(&plan, "slices");
+        assert_eq!(slices, Some(image * (u64::from(planes) + 1)));
+        assert_eq!(bytes_of(&plan, "combined"), Some(image));
+        assert!(is_absent(&plan, "planes") && is_absent(&plan, "depth_profile"));
+    }
+    let growth = with("volumetric", 100).peak_bytes - with("volumetric", 50).peak_bytes;
+    assert_eq!(growth, 50 * image);
+    let growth = with("level_map", 100).peak_bytes - with("level_map", 50).peak_bytes;
+    assert_eq!(growth, 50 * 2 * 4, "two words of the list for each plane");
+}
+
+#[test]
+fn planes_say_what_they_leave_out() {
+    let codes = |changes: &[(&str, Value)]| -> Vec<String> {
+        let plan = pool_with(changes);
+        plan.warnings.iter().map(|w| w.code.clone()).collect()
+    };
+    let two = json!([
+        { "mesh": "box.obj", "translation_m": [0, -1, 0] },
+        { "mesh": "box.obj", "translation_m": [2, -1, 0] }
+    ]);
+    let planes = json!({ "placement": "planes", "layers": 2 });
+    let found = codes(&[("objects", two.clone()), ("quality", planes)]);
+    assert!(found.contains(&"planes_ignore_other_objects".to_owned()));
+    assert!(found.contains(&"planes_light_the_first_layer".to_owned()));
+    let found = codes(&[("objects", two)]);
+    assert!(
+        found.iter().all(|code| !code.starts_with("planes_")),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn sums_of_planes_are_wide() {
+    let mut scene = pool();
+    for (quality, wide) in [
+        (json!({}), false),
+        (json!({ "placement": "planes" }), true),
+        (json!({ "method": "volumetric" }), true),
+    ] {
+        scene["quality"] = quality;
+        let facts = SceneFacts::of(&scene_files::scene(scene.clone())).unwrap();
+        assert_eq!(passes::light::needs_wide_sums(&facts, 0), wide);
     }
 }

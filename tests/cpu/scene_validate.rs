@@ -20,7 +20,7 @@ pub(crate) fn full() -> Value {
             "mesh": "blake3:00", "translation_m": [0, -1, 0], "rotation": [0, 0, 0, 1], "scale": 0.5, "albedo": [1, 0, 0.5]
         }],
         "camera": { "position_m": [0, 2.5, 4], "target_m": [0, -1.5, 0], "up": [0, 1, 0], "vertical_fov_deg": 45 },
-        "quality": { "water_cells": 256, "map_texels": 512, "level_map_texels": 256, "split_levels": 2, "pixel_samples": 1 },
+        "quality": { "water_cells": 256, "map_texels": 512, "level_map_texels": 256, "split_levels": 2, "planes": 51, "pixel_samples": 1 },
         "output": {
             "kind": "view", "width": 960, "height": 540, "png_bits": 8, "exposure_ev": 0.0, "layers": ["radiance"]
         },
@@ -132,6 +132,7 @@ fn ranges() -> Vec<RangeRow> {
             both(15.0, 2049.0),
         ),
         ("/quality/split_levels", [0.0, 8.0], [None, Some(9.0)]),
+        ("/quality/planes", [2.0, 1024.0], [Some(1.0), Some(1025.0)]),
         ("/quality/pixel_samples", [1.0, 8.0], both(0.0, 9.0)),
         ("/output/width", [1.0, 16_384.0], both(0.0, 16_385.0)),
         ("/output/height", [1.0, 16_384.0], both(0.0, 16_385.0)),
@@ -266,7 +267,28 @@ fn schema_ranges_are_the_ones_that_are_enforced() {
             }
         }
     }
-    assert_eq!(count, 14, "all such fields say their range in the schema");
+    assert_eq!(count, 15, "all such fields say their range in the schema");
+}
+
+#[test]
+fn a_layer_is_one_that_the_mesh_has() {
+    let mut scene = map_scene(json!({ "receiver": 0, "layer": 1 }));
+    let issue = only(&scene, "/output/layer");
+    assert!(
+        issue.accepted.contains("below `quality.layers`"),
+        "{issue:?}"
+    );
+    scene["quality"]["layers"] = json!(2);
+    assert_eq!(findings(&scene), []);
+    scene["output"]["layer"] = json!(2);
+    let issue = only(&scene, "/output/layer");
+    assert!(issue.accepted.ends_with("0 … 1"), "{issue:?}");
+    scene["output"]["receiver"] = json!("floor");
+    let issue = only(&scene, "/output/layer");
+    assert!(
+        issue.accepted.contains("the floor has one surface"),
+        "{issue:?}"
+    );
 }
 
 #[test]
@@ -396,4 +418,22 @@ fn limits_are_said_with_numbers() {
     over(&map, "/output", "512 × 512 are 262144 pixels", "100");
     let mesh_map = map_scene(json!({ "receiver": 0 }));
     over(&mesh_map, "/quality/level_map_texels", "256 × 256", "100");
+}
+
+#[test]
+fn dials_are_not_chosen_for_planes() {
+    for (wish, value) in [("target_error", json!(0.01)), ("time_budget_ms", json!(50))] {
+        for way in [
+            json!({ "placement": "planes" }),
+            json!({ "method": "volumetric" }),
+        ] {
+            let mut scene = map_scene(json!({}));
+            scene["quality"] = way;
+            assert_eq!(findings(&scene), []);
+            scene["quality"][wish] = value.clone();
+            let found = findings(&scene);
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert_eq!(found[0].pointer, "/quality/placement");
+        }
+    }
 }

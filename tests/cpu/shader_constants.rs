@@ -3,8 +3,11 @@
 use caustica::gpu::shader::Module;
 use caustica::passes::desc::Run;
 use caustica::passes::maps::MapLayout;
-use caustica::passes::{self, Groups, PassDesc, Repeat, Work, landed, level_map, slot, term};
+use caustica::passes::{
+    self, Groups, PassDesc, Repeat, Work, depth_profile, landed, level_map, slot, term,
+};
 use caustica::scene::facts::{MOST_LIGHTS, SceneFacts};
+use caustica::scene::ranges::{self, Integer as _};
 use serde_json::json;
 use wgpu::naga::{self, Expression, Literal, TypeInner};
 
@@ -82,6 +85,15 @@ fn figures_of_queues_and_maps_agree() {
     agrees("QUEUE_HEAD", slot::QUEUE_HEAD_WORDS as f64);
     agrees("QUEUE_COUNT", slot::QUEUE_HEAD_WORDS as f64 - 1.0);
     agrees("SPLIT_HEAD", slot::SPLIT_HEAD_WORDS as f64);
+    agrees("CULL_HEAD", slot::CULL_HEAD_WORDS as f64);
+    agrees("LIST_HEAD", slot::PLANE_LIST_HEAD_WORDS as f64);
+    agrees("WIDE_GROUPS", f64::from(slot::WIDE_GROUPS));
+    agrees("MOST_CULL_GROUPS", f64::from(slot::MOST_GROUPS));
+    agrees("MOST_PLANES", f64::from(ranges::Planes::MAX));
+    let profile = module("passes/depth_profile.wgsl");
+    let each = constant(&profile, "TEXELS_EACH").unwrap() as u32;
+    let side = size(&profile, "profile_count")[0];
+    assert_eq!(each * side, depth_profile::TEXELS_PER_GROUP);
     agrees("EMPTY_DEPTH", level_map::EMPTY_DEPTH);
     let camera = module("passes/camera_irradiance.wgsl");
     assert_eq!(array_length(&camera, "suns"), MOST_LIGHTS);
@@ -150,7 +162,7 @@ fn facts() -> SceneFacts {
         "lights": [{ "kind": "sun", "elevation_deg": 50, "irradiance_w_m2": [1, 1, 1] }],
         "objects": [{ "mesh": "box.obj", "translation_m": [0, -1, 0] }],
         "camera": { "position_m": [0, 3, 2], "target_m": [0, -1, 0] },
-        "quality": { "water_cells": 131, "map_texels": 333, "level_map_texels": 64 },
+        "quality": { "water_cells": 131, "map_texels": 333, "level_map_texels": 64, "slicing": "smart", "planes": 7 },
         "output": { "kind": "view", "width": 101, "height": 67 }
     }));
     SceneFacts::of(&resolved).unwrap()
@@ -251,7 +263,8 @@ fn sums_over_texels_cover_all_of_them() {
 fn every_entry_point_is_run_by_a_step() {
     let facts = facts();
     let coarse = facts.coarse();
-    let level_box = facts.suns[0].boxes[0].clone().unwrap();
+    let mut level_box = facts.suns[0].boxes[0].clone().unwrap();
+    level_box.key.layers = 2;
     for pass in passes::ALL {
         let run = match pass.repeat {
             Repeat::LevelMap => Run::LevelMap {

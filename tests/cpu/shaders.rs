@@ -13,10 +13,11 @@ use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Va
 /// Storage buffers that every WebGPU device can bind to one stage.
 const BASELINE_STORAGE_BUFFERS: usize = 8;
 /// Uniform variables that steps bring along.
-const UNIFORMS: [&str; 8] = [
+const UNIFORMS: [&str; 9] = [
     "comparison",
     "level_map_view",
     "light",
+    "planes",
     "resolve",
     "span",
     "split",
@@ -24,7 +25,15 @@ const UNIFORMS: [&str; 8] = [
     "view",
 ];
 /// Textures that the executor draws into.
-const TEXTURES: [&str; 3] = ["front_depth", "back_depth", "front_normal"];
+const TEXTURES: [&str; 7] = [
+    "front_depth",
+    "back_depth",
+    "front_normal",
+    "previous_depth",
+    "layer_depth",
+    "layer_normal",
+    "slice",
+];
 
 /// The module of a file below `shaders/`.
 pub(crate) fn module(path: &str) -> Module {
@@ -260,6 +269,7 @@ fn passes_bind_what_they_declare() {
         let draws = pass.name == "level_map";
         for slot in pass.writes {
             let name = slot.info().name;
+            let draws = draws || *slot == Slot::Slices;
             assert!(
                 draws || bound_anywhere.contains(name),
                 "{} says it writes {name} and binds it nowhere",

@@ -20,7 +20,7 @@ fn load(name: &str, mtl: Option<&str>) -> Mesh {
 }
 
 /// Triangles of each part (parts hang together by edges), largest first, with the number of open edges.
-fn parts(mesh: &Mesh) -> Vec<(Vec<[Vec3; 3]>, usize)> {
+pub(crate) fn parts(mesh: &Mesh) -> Vec<(Vec<[Vec3; 3]>, usize)> {
     let mut numbers = HashMap::new();
     let mut number = |p: Vec3| {
         let next = numbers.len();
@@ -71,7 +71,7 @@ fn parts(mesh: &Mesh) -> Vec<(Vec<[Vec3; 3]>, usize)> {
 }
 
 /// Volume inside, seen from the middle of the bounds: positive where the surface faces outward.
-fn volume(triangles: &[[Vec3; 3]]) -> f64 {
+pub(crate) fn volume(triangles: &[[Vec3; 3]]) -> f64 {
     let all = || triangles.iter().flatten().map(|p| p.as_dvec3());
     let min = all().reduce(|a, b| a.min(b)).unwrap();
     let max = all().reduce(|a, b| a.max(b)).unwrap();

@@ -95,6 +95,34 @@ fn assert_near(got: [f64; 3], expected: [f64; 3], tolerance: f64) {
 }
 
 #[test]
+fn flat_water_leaves_the_second_surface_of_a_box_dark() {
+    let map = |layer: u32| {
+        let scene = pool(Vec3::new(0.3, 0.2, 0.1), |v| {
+            v["quality"]["layers"] = json!(3);
+            v["output"] = json!({ "kind": "irradiance_map", "receiver": 0, "layer": layer });
+        });
+        find(&scene, 1e-2)
+    };
+    let (top, bottom, nothing) = (map(0), map(1), map(2));
+    // Every ray along the axis that enters a closed box leaves it once, and meets nothing more.
+    assert_eq!(top.compared, bottom.compared);
+    assert!(top.compared.iter().any(|&compared| compared));
+    assert!(nothing.compared.iter().all(|&compared| !compared));
+    assert!(bottom.irradiance.iter().all(|&e| e == [0.0; 3]));
+    let shadow = bottom.shadow.unwrap();
+    let dark = shadow
+        .iter()
+        .zip(&bottom.compared)
+        .filter(|(s, _)| **s == 1.0);
+    let inside = bottom.compared.iter().filter(|&&compared| compared).count();
+    assert!(
+        dark.count() * 10 > inside * 8,
+        "the box's own top stops the light"
+    );
+    assert!(top.irradiance.iter().any(|e| e[0] > 100.0));
+}
+
+#[test]
 fn flat_water_seen_from_above_is_the_closed_form() {
     let scene = pool(Vec3::new(0.1, 0.1, 0.1), |v| {
         v["camera"]["target_m"] = json!([2, -1.5, 2]);

@@ -21,8 +21,15 @@ mod folder;
 mod footprint;
 mod formulas;
 mod harness;
+mod instances;
+#[path = "../support/instances.rs"]
+mod instances_scene;
 mod lamps;
+mod layers;
+mod level_maps;
+mod level_maps_service;
 mod memory;
+mod planes;
 mod planted;
 #[path = "../support/scene_files.rs"]
 mod scene_files;

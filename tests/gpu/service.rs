@@ -5,6 +5,7 @@ use std::time::Duration;
 use axum::body::{Body, to_bytes};
 use axum::http::Request;
 use caustica::config::{Limits, RenderConfig};
+use caustica::gpu::GpuError;
 use caustica::http::{AppState, app};
 use caustica::jobs::{GpuQueue, GpuState, QueueSettings, RenderBackend};
 use caustica::render::Renderer;
@@ -13,7 +14,8 @@ use tower::ServiceExt as _;
 
 use super::scene_files;
 
-const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+pub(crate) const OBJ: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 pub(crate) struct Service(pub(crate) AppState);
 
@@ -31,16 +33,22 @@ impl Reply {
 }
 
 impl Service {
-    async fn start(config: RenderConfig, limits: Limits) -> Self {
+    pub(crate) async fn start(config: RenderConfig, limits: Limits) -> Self {
+        let for_thread = config.clone();
+        let factory = move || Ok(Box::new(Renderer::new(&for_thread)?) as Box<dyn RenderBackend>);
+        Self::with_backend(config, limits, factory).await
+    }
+
+    /// The same with a backend of one's own; ready.
+    pub(crate) async fn with_backend<F>(config: RenderConfig, limits: Limits, factory: F) -> Self
+    where
+        F: FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send + 'static,
+    {
         let settings = QueueSettings {
             waiting: 4,
             deadline: Duration::from_secs(300),
         };
-        let for_thread = config.clone();
-        let queue = GpuQueue::start(settings, move || {
-            Ok(Box::new(Renderer::new(&for_thread)?) as Box<dyn RenderBackend>)
-        })
-        .unwrap();
+        let queue = GpuQueue::start(settings, factory).unwrap();
         let state = AppState::new(queue, limits, config);
         let mut status = state.queue().watch();
         let ready = status.wait_for(|status| status.state == GpuState::Ready);
@@ -98,14 +106,14 @@ impl Service {
     }
 
     /// The id of a mesh that must be accepted.
-    async fn mesh(&self, obj: impl Into<Body>) -> Value {
+    pub(crate) async fn mesh(&self, obj: impl Into<Body>) -> Value {
         let reply = self.upload(obj).await;
         assert_eq!(reply.status, 201, "{}", reply.json());
         reply.json()
     }
 
     /// A picture of the usual scene, after whatever went before.
-    async fn picture(&self) -> Vec<u8> {
+    pub(crate) async fn picture(&self) -> Vec<u8> {
         let reply = self.render(pool(&[])).await;
         assert_eq!(
             reply.status,
@@ -137,7 +145,7 @@ pub(crate) fn assert_refused(reply: &Reply, status: u16, kind: &str, pointer: &s
 }
 
 /// A small pool with waves, with values replaced or added.
-fn pool(changes: &[(&str, Value)]) -> Value {
+pub(crate) fn pool(changes: &[(&str, Value)]) -> Value {
     let mut scene = json!({
         "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 0.9 }],
                    "absorption_per_m": [0.3, 0.06, 0.03] },

@@ -10,6 +10,7 @@
 //! | `render` | images, JSON, entity tags, timings |
 //! | `server` | a real socket: start, drain, shutdown |
 //! | `service` | health, info, metrics, pages |
+//! | `warm` | are level maps built on upload, and does a warm-up that fails take no mesh along? |
 //!
 //! `BLESS=1 cargo test --test http contract` rewrites `openapi.yaml`.
 
@@ -27,3 +28,4 @@ mod render;
 mod server;
 mod service;
 mod support;
+mod warm;

@@ -7,6 +7,7 @@ use caustica::gpu::GpuError;
 use caustica::http::ProblemKind;
 use caustica::jobs::{GpuState, JobError};
 use caustica::render::RenderError;
+use caustica::stats::CacheStats;
 
 use super::support::service::settings;
 use super::support::{Behaviour, Control, Service, scenes};
@@ -31,6 +32,56 @@ async fn after_a_loss_the_job_runs_again_on_a_new_device() {
     );
     assert_eq!(service.state.queue().status().losses, 1);
     assert_eq!(service.get("/readyz").await.status, 200);
+}
+
+#[tokio::test]
+async fn what_caches_have_counted_outlives_their_device() {
+    let service = Service::start().await;
+    let cache = |hits, entries| CacheStats {
+        hits,
+        misses: 2 * hits,
+        evictions: hits + 1,
+        entries,
+        bytes: 100 * entries,
+        budget_bytes: 1000,
+    };
+    service.control.set_cache(cache(7, 3));
+    service.assert_whole().await;
+    let mut status = service.state.queue().watch();
+    let seen = status.wait_for(|status| status.level_maps == cache(7, 3));
+    drop(seen.await.unwrap());
+
+    // The next device begins with an empty cache that has counted nothing.
+    service.control.hold_builds();
+    service.control.script([lost()]);
+    let client = {
+        let service = service.clone();
+        tokio::spawn(async move { service.post_json("/v1/render", scenes::small()).await })
+    };
+    service
+        .until(|state| matches!(state, GpuState::Lost(_)))
+        .await;
+    let between = service.state.queue().status().level_maps;
+    assert_eq!(
+        between,
+        CacheStats {
+            entries: 0,
+            bytes: 0,
+            ..cache(7, 3)
+        }
+    );
+    service.control.set_cache(CacheStats {
+        evictions: 0,
+        ..cache(1, 1)
+    });
+    service.control.release_builds();
+    assert_eq!(client.await.unwrap().status, 200);
+    let total = CacheStats {
+        evictions: 8,
+        ..cache(8, 1)
+    };
+    let seen = status.wait_for(|status| status.level_maps == total);
+    drop(seen.await.unwrap());
 }
 
 #[tokio::test]

@@ -99,6 +99,7 @@ async fn metrics_count_what_happened() {
         "caustica_ready 1",
         "caustica_level_map_cache_bytes 4096",
         "caustica_level_map_cache_entries 1",
+        "caustica_level_map_cache_budget_bytes 8192",
         r#"name="Puppet 3000""#,
     ] {
         assert!(text.contains(line), "{line} is missing in\n{text}");

@@ -50,16 +50,12 @@ pub async fn info(State(state): State<AppState>) -> Json<Info> {
         software: adapter.as_ref().map(|adapter| adapter.software),
         adapter,
         limits: *state.limits(),
-        memory_budget_bytes: bytes_of_mib(config.memory_budget_mib),
-        level_map_budget_bytes: bytes_of_mib(config.level_map_budget_mib),
+        memory_budget_bytes: config.memory_budget_bytes(),
+        level_map_budget_bytes: config.level_map_budget_bytes(),
         queue: settings.waiting,
         deadline_s: settings.deadline.as_secs_f64(),
         features: features(),
     })
-}
-
-fn bytes_of_mib(mib: u64) -> u64 {
-    mib.saturating_mul(1 << 20)
 }
 
 /// The words of the scene's enumerations, taken from their schemas so that they cannot fall behind.

@@ -1,17 +1,24 @@
 //! `/v1/meshes`: upload, list, inspect, forget.
 
-use axum::Json;
+use std::sync::Arc;
+use std::time::Instant;
+
 use axum::body::Bytes;
 use axum::extract::{FromRequest, Multipart, Path, Request, State};
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use axum::{Extension, Json};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::super::error::ApiError;
 use super::super::extract::{bytes, media_type, run_blocking, unsupported};
-use super::super::problem::{CommonProblems, MeshProblems, UploadProblems};
+use super::super::observe::Arrival;
+use super::super::problem::{CommonProblems, MeshProblems, Problem, UploadProblems};
 use super::super::state::AppState;
-use crate::mesh::MeshInfo;
+use super::super::warm::{WarmParameters, WarmQuery};
+use crate::level_map::{WarmUp, WarmedMap};
+use crate::mesh::{Mesh, MeshInfo};
 
 /// Media types that a mesh is read from.
 const MESH_TYPES: &str = "text/plain, model/obj or application/octet-stream with an OBJ, or multipart/form-data with the \
@@ -25,6 +32,22 @@ const EXAMPLE_OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n";
 pub struct MeshList {
     /// By id.
     pub meshes: Vec<MeshInfo>,
+}
+
+/// A mesh that is stored now, and what was done for it besides.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Uploaded {
+    /// The mesh.
+    #[serde(flatten)]
+    pub mesh: MeshInfo,
+    /// The level maps that `warm` asked for, ready in the order of their suns; empty when they could not be built. Absent unless
+    /// asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warmed: Option<Vec<WarmedMap>>,
+    /// Why the level maps could not be built, as a render would answer it. The mesh is stored all the same, and frames build what
+    /// they need; the same upload again tries once more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warm_problem: Option<Problem>,
 }
 
 /// An upload with materials.
@@ -57,8 +80,13 @@ pub async fn list(State(state): State<AppState>) -> Json<MeshList> {
 ///
 /// The id is a hash of the uploaded bytes: the same bytes get the same id, here and everywhere. Meshes live until they are
 /// deleted or the process ends.
+///
+/// With `warm` the level maps for some suns are built before the answer, so that the first frame under one of them finds its own.
+/// That waits for the GPU like a render. Where it cannot be done the mesh is stored nonetheless and the answer is the same but
+/// for `warm_problem`, which says why (for instance `urn:caustica:problem:queue-full`, `…:over-budget`).
 #[utoipa::path(
     post, path = "/v1/meshes", tag = "meshes",
+    params(WarmParameters),
     request_body(
         description = "A Wavefront OBJ in metres, alone or with its MTL.",
         content(
@@ -71,15 +99,17 @@ pub async fn list(State(state): State<AppState>) -> Json<MeshList> {
         )
     ),
     responses(
-        (status = CREATED, description = "Stored.", body = MeshInfo, headers(("location", description = "Its address."))),
-        (status = OK, description = "Known already.", body = MeshInfo, headers(("location", description = "Its address."))),
+        (status = CREATED, description = "Stored.", body = Uploaded, headers(("location", description = "Its address."))),
+        (status = OK, description = "Known already.", body = Uploaded, headers(("location", description = "Its address."))),
         UploadProblems,
     )
 )]
 pub async fn upload(
     State(state): State<AppState>,
+    Extension(Arrival(arrival)): Extension<Arrival>,
+    WarmQuery(wanted): WarmQuery,
     request: Request,
-) -> Result<(StatusCode, HeaderMap, Json<MeshInfo>), ApiError> {
+) -> Result<Response, ApiError> {
     let media_type = media_type(request.headers());
     let files = match media_type.as_deref() {
         Some("text/plain" | "model/obj" | "application/octet-stream") => MeshFiles {
@@ -89,23 +119,53 @@ pub async fn upload(
         Some("multipart/form-data") => read_form(request, &state).await?,
         _ => return Err(unsupported(media_type, MESH_TYPES)),
     };
-    let (info, created) = run_blocking(move || {
-        let inserted = state
-            .meshes()
-            .insert_obj(&files.obj, files.mtl.as_deref())?;
-        Ok((inserted.mesh.info(), inserted.created))
+    let store = state.clone();
+    let inserted = run_blocking(move || {
+        let store = store.meshes();
+        Ok(store.insert_obj(&files.obj, files.mtl.as_deref())?)
     })
     .await?;
-    let status = if created {
+    let mut uploaded = Uploaded {
+        mesh: inserted.mesh.info(),
+        warmed: None,
+        warm_problem: None,
+    };
+    let mut failure = None;
+    if let Some(wanted) = wanted {
+        match warm(&state, inserted.mesh, wanted, arrival).await {
+            Ok(maps) => uploaded.warmed = Some(maps),
+            Err(error) => {
+                uploaded.warmed = Some(Vec::new());
+                uploaded.warm_problem = Some(Problem::of(&error));
+                failure = Some(Extension(error));
+            }
+        }
+    }
+    let status = if inserted.created {
         StatusCode::CREATED
     } else {
         StatusCode::OK
     };
-    let mut headers = HeaderMap::new();
-    if let Ok(location) = format!("/v1/meshes/{}", info.id).parse() {
-        headers.insert(header::LOCATION, location);
+    let location = [(header::LOCATION, format!("/v1/meshes/{}", uploaded.mesh.id))];
+    // The failure is logged and counted where those of whole requests are.
+    Ok((status, failure, location, Json(uploaded)).into_response())
+}
+
+/// Builds level maps of a stored mesh.
+async fn warm(
+    state: &AppState,
+    mesh: Arc<Mesh>,
+    wanted: WarmUp,
+    arrival: Instant,
+) -> Result<Vec<WarmedMap>, ApiError> {
+    state.require_trusted_device()?;
+    let id = mesh.id.clone();
+    let warmed = state.queue().warm(mesh, wanted, arrival).await;
+    // Deleted in the meantime: then what was built for it goes as well.
+    if state.meshes().get(&id).is_none() {
+        state.queue().forget_mesh(&id);
     }
-    Ok((status, headers, Json(info)))
+    Ok(warmed?)
 }
 
 /// Tells about one mesh.

@@ -7,13 +7,15 @@ use std::time::Duration;
 use caustica::frame::{Frame, Layer};
 use caustica::gpu::GpuError;
 use caustica::jobs::RenderBackend;
+use caustica::level_map::{WarmSun, WarmUp, WarmedMap};
+use caustica::mesh::Mesh;
 use caustica::plan::{Plan, PlannedPass};
 use caustica::render::{RenderError, SelfCheck, SelfCheckItem};
 use caustica::scene::{LayerName, Output, ResolvedScene};
 use caustica::stats::{AdapterStats, CacheStats, PassStats, Stats};
 use tokio_util::sync::CancellationToken;
 
-/// What the next render does.
+/// What the next render or warm-up does.
 pub(crate) enum Behaviour {
     /// A small gradient.
     Draw,
@@ -44,11 +46,12 @@ struct Inner {
     gate_open: bool,
     builds_held: bool,
     diary: Vec<String>,
+    warmed: Vec<(String, WarmUp)>,
     cache: CacheStats,
 }
 
 impl Control {
-    /// Appends to what the coming renders do; afterwards they draw.
+    /// Appends to what the coming renders and warm-ups do; afterwards they draw.
     pub(crate) fn script(&self, behaviours: impl IntoIterator<Item = Behaviour>) {
         self.inner.lock().unwrap().renders.extend(behaviours);
     }
@@ -93,6 +96,11 @@ impl Control {
         self.inner.lock().unwrap().diary.clone()
     }
 
+    /// The warm-ups that were done: mesh and what was wanted.
+    pub(crate) fn warmed(&self) -> Vec<(String, WarmUp)> {
+        self.inner.lock().unwrap().warmed.clone()
+    }
+
     /// How often something has happened.
     pub(crate) fn count(&self, event: &str) -> usize {
         self.diary().iter().filter(|entry| *entry == event).count()
@@ -132,6 +140,35 @@ impl Control {
 
 struct Fake {
     control: Control,
+}
+
+impl Fake {
+    /// Does what the script says, and whether the result is to be no number.
+    fn act(&self, event: &str, cancel: &CancellationToken) -> Result<bool, RenderError> {
+        self.control.note(event);
+        let behaviour = self.control.inner.lock().unwrap().renders.pop_front();
+        match behaviour.unwrap_or(Behaviour::Draw) {
+            Behaviour::Draw => {}
+            Behaviour::DrawNan => return Ok(true),
+            Behaviour::Fail(error) => return Err(error),
+            Behaviour::Panic => panic!("the strings are tangled"),
+            Behaviour::BlockDeaf => {
+                while !self.control.inner.lock().unwrap().gate_open {
+                    std::thread::sleep(Duration::from_millis(1));
+                }
+            }
+            Behaviour::Block => {
+                while !self.control.inner.lock().unwrap().gate_open {
+                    if cancel.is_cancelled() {
+                        self.control.note(format!("{event} cancelled"));
+                        return Err(RenderError::Cancelled);
+                    }
+                    std::thread::sleep(Duration::from_millis(1));
+                }
+            }
+        }
+        Ok(false)
+    }
 }
 
 impl Drop for Fake {
@@ -177,36 +214,36 @@ impl RenderBackend for Fake {
         resolved: &ResolvedScene,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
-        self.control.note("render");
-        let behaviour = self.control.inner.lock().unwrap().renders.pop_front();
-        match behaviour.unwrap_or(Behaviour::Draw) {
-            Behaviour::Draw => {}
-            Behaviour::DrawNan => {
-                let mut frame = draw(resolved);
-                for layer in frame.layers.values_mut() {
-                    layer.data.fill(f32::NAN);
-                }
-                return Ok(frame);
+        let is_nan = self.act("render", cancel)?;
+        let mut frame = draw(resolved);
+        if is_nan {
+            for layer in frame.layers.values_mut() {
+                layer.data.fill(f32::NAN);
             }
-            Behaviour::Fail(error) => return Err(error),
-            Behaviour::Panic => panic!("the strings are tangled"),
-            Behaviour::BlockDeaf => {
-                while !self.control.inner.lock().unwrap().gate_open {
-                    std::thread::sleep(Duration::from_millis(1));
-                }
-            }
-            Behaviour::Block => {
-                while !self.control.inner.lock().unwrap().gate_open {
-                    if cancel.is_cancelled() {
-                        self.control.note("render cancelled");
-                        return Err(RenderError::Cancelled);
-                    }
-                    std::thread::sleep(Duration::from_millis(1));
-                }
-            }
+        } else {
+            self.control.note("drawn");
         }
-        self.control.note("drawn");
-        Ok(draw(resolved))
+        Ok(frame)
+    }
+
+    fn warm(
+        &mut self,
+        mesh: &Arc<Mesh>,
+        wanted: &WarmUp,
+        cancel: &CancellationToken,
+    ) -> Result<Vec<WarmedMap>, RenderError> {
+        self.act("warm", cancel)?;
+        let mut inner = self.control.inner.lock().unwrap();
+        inner.warmed.push((mesh.id.clone(), wanted.clone()));
+        let map = |sun: &WarmSun| WarmedMap {
+            elevation_deg: sun.elevation_deg,
+            azimuth_deg: sun.azimuth_deg,
+            texels: wanted.texels,
+            layers: wanted.layers,
+            bytes: 4096,
+            cached: false,
+        };
+        Ok(wanted.suns.iter().map(map).collect())
     }
 
     fn self_check(&mut self) -> Result<SelfCheck, GpuError> {

@@ -1,0 +1,56 @@
+// Depth profile — which planes of an object have a surface near them (Tipprasert 2006, §4.7.2)? A level is the acceptance interval
+// of a plane; levels without a texel are dropped, valid levels side by side make a piece of the box. A piece of m levels is m
+// distances high, and with ε half a distance eq. 4-22 gives it m planes: those in the middle of its levels.
+#import "lib/slicing.wgsl"
+#import "shared/planes_uniform.wgsl"
+#import "shared/receivers.wgsl"
+#import "shared/floor_distance.wgsl"
+#import "shared/level_maps.wgsl"
+#import "shared/reference_planes.wgsl"
+
+// Per object: planes that are used, pieces of the box they make, two words unused, then the planes in order, then texels per level.
+@group(0) @binding(18) var<storage, read_write> plane_lists: array<atomic<u32>>;
+
+const LIST_HEAD: u32 = 4u;
+const MOST_PLANES: u32 = 1024u;
+const TEXELS_EACH: u32 = 16u;
+
+var<workgroup> counts: array<atomic<u32>, MOST_PLANES>;
+
+// The histogram: one invocation counts a few texels.
+@compute @workgroup_size(64)
+fn profile_count(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    let r = receivers[planes.receiver];
+    let texels = r.map_width * r.map_height;
+    let first = (group.y * groups.x + group.x) * (64u * TEXELS_EACH) + invocation;
+    for (var i = 0u; i < TEXELS_EACH; i++) {
+        let texel = first + 64u * i;
+        if texel >= texels { break; }
+        let plane = plane_of_texel(r, vec2i(i32(texel % r.map_width), i32(texel / r.map_width)));
+        if plane >= 0 { atomicAdd(&counts[plane], 1u); }
+    }
+    workgroupBarrier();
+    for (var level = invocation; level < planes.planes; level += 64u) {
+        let count = atomicLoad(&counts[level]);
+        if count > 0u { atomicAdd(&plane_lists[planes.list + LIST_HEAD + planes.planes + level], count); }
+    }
+}
+
+// The list, in order: one invocation, so that it is the same every time.
+@compute @workgroup_size(1)
+fn profile_compact() {
+    var used = 0u;
+    var pieces = 0u;
+    var before = false;
+    for (var level = 0u; level < planes.planes; level++) {
+        let valid = planes.smart == 0u || atomicLoad(&plane_lists[planes.list + LIST_HEAD + planes.planes + level]) > 0u;
+        if valid {
+            atomicStore(&plane_lists[planes.list + LIST_HEAD + used], level);
+            used += 1u;
+            if !before { pieces += 1u; }
+        }
+        before = valid;
+    }
+    atomicStore(&plane_lists[planes.list], used);
+    atomicStore(&plane_lists[planes.list + 1u], pieces);
+}

@@ -1,0 +1,105 @@
+// Planes — light on meshes by reference planes (Tipprasert 2006, §4.4, §4.5): each beam's triangle on each plane lights the texels
+// whose depth is within half a distance of the plane. One invocation per beam and plane.
+#import "lib/attenuation.wgsl"
+#import "lib/coverage.wgsl"
+#import "lib/slicing.wgsl"
+#import "lib/solid_angle.wgsl"
+#import "shared/light.wgsl"
+#import "shared/planes_uniform.wgsl"
+#import "shared/receivers.wgsl"
+#import "shared/floor_distance.wgsl"
+#import "shared/level_maps.wgsl"
+#import "shared/reference_planes.wgsl"
+#import "shared/flux.wgsl"
+#import "shared/footprint.wgsl"
+#import "shared/wide_footprint.wgsl"
+#import "shared/beam_triangle.wgsl"
+#import "shared/unit_flux.wgsl"
+#import "shared/grid.wgsl"
+#import "shared/grid_rays.wgsl"
+#import "shared/cull.wgsl"
+#import "shared/account.wgsl"
+
+// Per object: planes that are used, pieces of the box they make, two words unused, then the planes in order; see depth_profile.wgsl.
+@group(0) @binding(18) var<storage, read> plane_lists: array<u32>;
+// Per object: beams kept, planes used, pieces of the box, beams with wide footprints.
+@group(0) @binding(19) var<storage, read_write> plane_counts: array<vec4u>;
+
+const LIST_HEAD: u32 = 4u;
+
+// What takes light now: texels of `accepting`'s level map that belong to plane `accepted`; and which share of the triangle they took.
+var<private> accepting: Receiver;
+var<private> accepted: i32;
+var<private> taken: f32;
+
+// Adds `share` of the flux at texel (x, y) where the plane accepts it; what lies beside the map is returned.
+fn deposit_share(target_map: Target, x: i32, y: i32, share: f32, triangle_flux: vec3f) -> f32 {
+    if x < 0 || y < 0 || x >= target_map.width || y >= target_map.height { return share; }
+    if share <= 0.0 || plane_of_texel(accepting, vec2i(x, y)) != accepted { return 0.0; }
+    taken += share;
+    let texel = target_map.offset + u32(y * target_map.width + x);
+    let counts = triangle_flux * (share * target_map.scale);
+    add_flux(texel, 0u, target_map.channels, counts.x);
+    if target_map.channels == 3u {
+        add_flux(texel, 1u, 3u, counts.y);
+        add_flux(texel, 2u, 3u, counts.z);
+    }
+    return 0.0;
+}
+
+@compute @workgroup_size(1)
+fn planes_share_out() {
+    let used = plane_lists[planes.list];
+    share_out(used);
+    plane_counts[planes.object] = vec4u(kept_beams(), used, plane_lists[planes.list + 1u], atomicLoad(&beam_queue[WIDE_COUNT]));
+}
+
+@compute @workgroup_size(64)
+fn planes_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    accepting = receivers[planes.receiver];
+    let plane = plane_lists[planes.list + LIST_HEAD + group.y];
+    accepted = i32(plane);
+    let s = plane_s(accepting, plane);
+    let count = atomicLoad(&beam_queue[NARROW_COUNT]);
+    for (var item = group.x * CULL_GROUP + invocation; item < count; item += groups.x * CULL_GROUP) {
+        let b = narrow_beam(item);
+        let c = cross_plane(b, accepting, s);
+        if !c.meets { continue; }
+        taken = 0.0;
+        let arriving = b.transmitted * mean_transmission(c.t);
+        deposit_triangle(target_of(accepting), c.uv[0], c.uv[1], c.uv[2], arriving);
+        if ATTENUATES { note_losses(Losses(0.0, taken * b.transmitted * mean_extinction(c.t), vec3f(0.0))); }
+    }
+    workgroupBarrier();
+    flush_account(invocation);
+}
+
+// Some workgroups (along z) per wide footprint (along x) and plane (along y); what is lost on the way goes straight to the global
+// sums, as in deposit.wgsl.
+@compute @workgroup_size(64)
+fn planes_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    accepting = receivers[planes.receiver];
+    let plane = plane_lists[planes.list + LIST_HEAD + group.y];
+    accepted = i32(plane);
+    let s = plane_s(accepting, plane);
+    let count = atomicLoad(&beam_queue[WIDE_COUNT]);
+    let lane = group.z * 64u + invocation;
+    for (var item = group.x; item < count; item += groups.x) {
+        let b = wide_beam(item);
+        let c = cross_plane(b, accepting, s);
+        if !c.meets { continue; }
+        taken = 0.0;
+        let arriving = b.transmitted * mean_transmission(c.t);
+        if is_segment(c.uv[0], c.uv[1], c.uv[2]) {
+            if lane == 0u { deposit_segment(target_of(accepting), c.uv[0], c.uv[1], c.uv[2], arriving); }
+        } else {
+            deposit_texels(target_of(accepting), c.uv, arriving, lane, groups.z * 64u);
+        }
+        if ATTENUATES && taken > 0.0 {
+            let lost = taken * b.transmitted * mean_extinction(c.t);
+            for (var channel = 0u; channel < light.channels; channel++) {
+                add_energy(TERM_EXTINGUISHED + channel, lost[channel] * light.energy_scale);
+            }
+        }
+    }
+}

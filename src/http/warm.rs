@@ -1,0 +1,170 @@
+//! The query of an upload: under which suns the mesh will be seen first.
+
+use axum::extract::{FromRequestParts, Query};
+use axum::http::request::Parts;
+use utoipa::IntoParams;
+
+use super::error::ApiError;
+use super::state::AppState;
+use crate::level_map::{WarmSun, WarmUp};
+use crate::scene::ranges::{ELEVATION, IOR, Integer, Layers, LevelMapTexels, TURNING_ANGLE};
+use crate::scene::{Issue, Quality, Water};
+
+/// The names of [`WarmParameters`].
+const NAMES: [&str; 4] = ["warm", "warm_texels", "warm_layers", "warm_ior"];
+
+/// What an upload may ask for besides: level maps, so that the first frame finds them.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+#[expect(
+    dead_code,
+    reason = "the shape of a query, for the contract; parameters are read one by one"
+)]
+pub struct WarmParameters {
+    /// `ELEVATION,AZIMUTH` of a sun, degrees, as in a scene: above 0 … 90, −10⁶ … 10⁶. Once for each sun. The level map is built that
+    /// an unrotated, uniformly scaled instance of the mesh needs under it.
+    #[param(style = Form, explode, example = json!(["60,30"]))]
+    warm: Option<Vec<String>>,
+    /// `quality.level_map_texels` of the frames to come, a power of two, 16 … 2048. Default 256.
+    #[param(minimum = 16, maximum = 2048)]
+    warm_texels: Option<u32>,
+    /// `quality.layers` of the frames to come, 1 … 4. Default 1.
+    #[param(minimum = 1, maximum = 4)]
+    warm_layers: Option<u32>,
+    /// `water.ior` of the frames to come, 1 … 4. Default 1.333.
+    #[param(minimum = 1, maximum = 4)]
+    warm_ior: Option<f64>,
+}
+
+/// What is to be warmed up, if anything.
+#[derive(Clone, Debug)]
+pub struct WarmQuery(pub Option<WarmUp>);
+
+impl FromRequestParts<AppState> for WarmQuery {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &AppState) -> Result<Self, ApiError> {
+        let pairs = Query::<Vec<(String, String)>>::try_from_uri(&parts.uri)
+            .map_err(|rejection| invalid(rejection.body_text(), "NAME=VALUE&NAME=VALUE …"))?;
+        Reader::default().read(&pairs.0, state.limits().max_lights)
+    }
+}
+
+/// What has been read so far, and what was wrong with it.
+#[derive(Default)]
+struct Reader {
+    suns: Vec<WarmSun>,
+    texels: Option<u32>,
+    layers: Option<u32>,
+    ior: Option<f64>,
+    issues: Vec<Issue>,
+}
+
+impl Reader {
+    fn read(mut self, pairs: &[(String, String)], max_suns: usize) -> Result<WarmQuery, ApiError> {
+        for (name, text) in pairs {
+            match name.as_str() {
+                "warm" => {
+                    let sun = self.note(name, text, sun(text));
+                    self.suns.extend(sun);
+                }
+                "warm_texels" => {
+                    let texels = integer::<LevelMapTexels>(text);
+                    let texels = self.note(name, text, texels);
+                    self.texels = self.once(name, self.texels, texels);
+                }
+                "warm_layers" => {
+                    let layers = integer::<Layers>(text);
+                    let layers = self.note(name, text, layers);
+                    self.layers = self.once(name, self.layers, layers);
+                }
+                "warm_ior" => {
+                    let ior = number(text).filter(|&ior| IOR.contains(ior));
+                    let ior = self.note(name, text, ior.ok_or_else(|| IOR.to_string()));
+                    self.ior = self.once(name, self.ior, ior);
+                }
+                _ => self.refuse(format!("there is no parameter `{name}`"), NAMES.join(", ")),
+            }
+        }
+        if self.suns.len() > max_suns {
+            let found = self.suns.len();
+            self.refuse(
+                format!("there are {found} of the parameter `warm`"),
+                format!("at most {max_suns}"),
+            );
+        }
+        if self.suns.is_empty() && !pairs.is_empty() {
+            self.refuse(
+                "the parameter `warm` is missing".to_owned(),
+                format!("{} beside `warm`", NAMES[1..].join(", ")),
+            );
+        }
+        if !self.issues.is_empty() {
+            return Err(ApiError::InvalidQuery(self.issues));
+        }
+        Ok(WarmQuery((!self.suns.is_empty()).then(|| WarmUp {
+            suns: self.suns,
+            texels: self.texels.unwrap_or(Quality::default().level_map_texels),
+            layers: self.layers.unwrap_or(Quality::default().layers),
+            ior: self.ior.unwrap_or(Water::default().ior),
+        })))
+    }
+
+    /// A value, or nothing and a finding.
+    fn note<T>(&mut self, name: &str, text: &str, value: Result<T, String>) -> Option<T> {
+        let shown: String = text.chars().take(60).collect();
+        value
+            .map_err(|accepted| {
+                self.refuse(format!("the parameter `{name}` is `{shown}`"), accepted);
+            })
+            .ok()
+    }
+
+    /// The value of a parameter that may be there once.
+    fn once<T>(&mut self, name: &str, before: Option<T>, now: Option<T>) -> Option<T> {
+        if before.is_some() {
+            self.refuse(
+                format!("the parameter `{name}` is there twice"),
+                "once".to_owned(),
+            );
+        }
+        now
+    }
+
+    fn refuse(&mut self, detail: String, accepted: String) {
+        self.issues.push(Issue::invalid("", detail, accepted));
+    }
+}
+
+/// A query that cannot be read at all.
+fn invalid(detail: String, accepted: &str) -> ApiError {
+    ApiError::InvalidQuery(vec![Issue::invalid("", detail, accepted)])
+}
+
+fn number(text: &str) -> Option<f64> {
+    text.parse().ok()
+}
+
+/// An integer, or what would be accepted.
+fn integer<R: Integer>(text: &str) -> Result<u32, String> {
+    let value = text.parse().ok().filter(|&value| R::accepts(value));
+    value.ok_or_else(R::accepted)
+}
+
+/// `ELEVATION,AZIMUTH`, or what would be accepted.
+fn sun(text: &str) -> Result<WarmSun, String> {
+    let read = || {
+        let (elevation, azimuth) = text.split_once(',')?;
+        let sun = WarmSun {
+            elevation_deg: number(elevation).filter(|&e| ELEVATION.contains(e) && e > 0.0)?,
+            azimuth_deg: number(azimuth).filter(|&a| TURNING_ANGLE.contains(a))?,
+        };
+        Some(sun)
+    };
+    read().ok_or_else(|| {
+        format!(
+            "ELEVATION,AZIMUTH of a sun above the horizon: a number above 0, at most {} degrees; {TURNING_ANGLE}",
+            ELEVATION.max
+        )
+    })
+}

@@ -1,0 +1,53 @@
+//! Level maps ahead of the frames that will ask for them.
+
+use std::sync::Arc;
+
+use tokio_util::sync::CancellationToken;
+
+use super::{RenderError, Renderer};
+use crate::level_map::{WarmUp, WarmedMap};
+use crate::mesh::Mesh;
+use crate::plan::{self, Cached as _};
+use crate::scene::facts::{SceneFacts, Wanted};
+use crate::scene::placement::LevelMapKey;
+
+impl Renderer {
+    /// Builds the level maps that an unrotated, uniformly scaled instance of `mesh` needs under some suns, as a frame would, and
+    /// says of each sun what is ready now. Those that are there already count as used.
+    ///
+    /// # Errors
+    /// As [`Self::render`]; the maps finished by then stay.
+    pub fn warm(
+        &mut self,
+        mesh: &Arc<Mesh>,
+        wanted: &WarmUp,
+        cancel: &CancellationToken,
+    ) -> Result<Vec<WarmedMap>, RenderError> {
+        // Where all is there nothing is submitted, and only a poll tells of a lost device.
+        self.gpu.tidy();
+        self.gpu.check()?;
+        let resolved = wanted.scene_of(mesh)?;
+        let mut facts = SceneFacts::of(&resolved)?;
+        facts.wanted = Wanted::LevelMaps;
+        let warmed: Vec<WarmedMap> = keys_by_sun(&facts)
+            .zip(&wanted.suns)
+            .map(|(key, sun)| WarmedMap {
+                elevation_deg: sun.elevation_deg,
+                azimuth_deg: sun.azimuth_deg,
+                texels: key.texels,
+                layers: key.layers,
+                bytes: key.bytes(),
+                cached: self.has_level_map(key),
+            })
+            .collect();
+        let plan = plan::plan_scene(&facts, self)?;
+        self.run(&resolved, &facts, &plan, cancel)?;
+        Ok(warmed)
+    }
+}
+
+/// The level map under each sun; the scene has one object.
+fn keys_by_sun(facts: &SceneFacts) -> impl Iterator<Item = &LevelMapKey> {
+    let boxes = facts.suns.iter().flat_map(|sun| sun.boxes.iter().flatten());
+    boxes.map(|level_box| &level_box.key)
+}

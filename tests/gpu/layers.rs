@@ -1,0 +1,155 @@
+//! Surfaces of an object behind its first: what only tilted rays reach.
+
+use caustica::accuracy::metrics::relative_l1;
+use caustica::frame::Frame;
+use caustica::reference::{Truth, TruthSettings, truth};
+use caustica::scene::{LayerName, ResolvedScene};
+use serde_json::{Value, json};
+
+use super::harness::{self, Map};
+use super::scene_files;
+
+fn truth_of(scene: &ResolvedScene, error: f64) -> Truth {
+    let settings = TruthSettings {
+        target_error: Some(error),
+        most_points: 20_000,
+        ..TruthSettings::default()
+    };
+    truth(scene, &settings, &|_| {}, &|| false).unwrap()
+}
+
+/// The sides of the box in `scenes/box_sides.json`, small, with so many layers.
+fn box_sides(layers: &str) -> ResolvedScene {
+    let mut scene = scene_files::load(
+        "box_sides",
+        &[
+            ("/output/width", "96"),
+            ("/output/height", "72"),
+            ("/output/format", "exr"),
+            ("/output/layers", "irradiance,normal,albedo"),
+            ("/quality/layers", layers),
+        ],
+    );
+    scene.scene.quality.water_cells = 512;
+    scene
+}
+
+/// Pixels of the box's sides of which `towards` says yes to the normal.
+fn on_sides(frame: &Frame, towards: impl Fn(&[f64; 3]) -> bool) -> Vec<usize> {
+    let normals = harness::layer(frame, LayerName::Normal);
+    let albedos = harness::layer(frame, LayerName::Albedo);
+    let is_box = |at: &usize| albedos[*at][0] > 0.7 && normals[*at][1].abs() < 0.5;
+    let all = (0..normals.len()).filter(is_box);
+    all.filter(|&at| towards(&normals[at])).collect()
+}
+
+fn error_at(pixels: &[usize], frame: &Frame, truth: &Truth) -> f64 {
+    let seen = harness::layer(frame, LayerName::Irradiance);
+    let pick =
+        |values: &[[f64; 3]]| -> Vec<f64> { pixels.iter().flat_map(|&at| values[at]).collect() };
+    relative_l1(&pick(&seen), &pick(&truth.irradiance)).unwrap()
+}
+
+// Measured: see the assertions, whose bounds are about one and a half times the figures.
+#[test]
+fn sides_away_from_the_light_are_lit_by_a_second_layer() {
+    let truth = truth_of(&box_sides("1"), 1e-2);
+    let mut away_errors = Vec::new();
+    let mut side_errors = Vec::new();
+    for layers in ["1", "2", "3"] {
+        let scene = box_sides(layers);
+        let mut renderer = harness::renderer();
+        harness::render_with(&mut renderer, &scene);
+        let frame = harness::render_with(&mut renderer, &scene);
+        drop(renderer);
+        let sides = on_sides(&frame, |_| true);
+        let away = on_sides(&frame, |n| n[2] > 0.5);
+        assert!(away.len() > 500 && sides.len() > away.len() + 300);
+        let errors = (
+            error_at(&sides, &frame, &truth),
+            error_at(&away, &frame, &truth),
+        );
+        let stats = &frame.stats;
+        println!(
+            "{layers} layers: {:.3} on the sides ({} pixels), {:.3} on the one away from the sun ({} pixels); {:.0} ms, {} bytes planned, {} held; truth {:.1e}",
+            errors.0,
+            sides.len(),
+            errors.1,
+            away.len(),
+            stats.time_ms.total,
+            stats.memory.planned_peak_bytes,
+            stats.memory.peak_bytes,
+            truth.relative_error
+        );
+        assert!(stats.memory.peak_bytes <= stats.memory.planned_peak_bytes);
+        assert!(stats.energy[0].closure <= 1e-5, "{:?}", stats.energy);
+        side_errors.push(errors.0);
+        away_errors.push(errors.1);
+    }
+    // One layer leaves it black.
+    assert!((away_errors[0] - 1.0).abs() <= 1e-9, "{away_errors:?}");
+    assert!(away_errors[1] <= 0.35, "{away_errors:?}");
+    assert!(side_errors[1] < side_errors[0], "{side_errors:?}");
+    assert!(
+        (away_errors[2] - away_errors[1]).abs() <= 0.05,
+        "{away_errors:?}"
+    );
+}
+
+/// The box on whose sides tilted rays fall, as a map of one of its layers.
+fn layer_map(layers: u32, layer: u32) -> Value {
+    json!({
+        "water": { "waves": [
+            { "kind": "sine", "amplitude_m": 0.045, "wavelength_m": 0.9, "direction_deg": 70, "phase_deg": 20 },
+            { "kind": "sine", "amplitude_m": 0.035, "wavelength_m": 0.7, "direction_deg": 110, "phase_deg": 130 }
+        ], "absorption_per_m": [0.2, 0.2, 0.2] },
+        "floor": { "depth_m": 1.6, "size_m": [8, 8] },
+        "lights": [{ "kind": "sun", "elevation_deg": 35, "azimuth_deg": 190, "irradiance_w_m2": [1000, 1000, 1000] }],
+        "objects": [{ "mesh": "box.obj", "translation_m": [0, -1, 0], "scale": 0.6 }],
+        "quality": { "water_cells": 768, "level_map_texels": 64, "split_levels": 3, "layers": layers },
+        "output": { "kind": "irradiance_map", "receiver": 0, "layer": layer }
+    })
+}
+
+#[test]
+fn maps_of_layers_are_those_of_the_reference() {
+    for (layer, bound) in [(0, 0.06), (1, 0.35)] {
+        let scene = scene_files::scene(layer_map(3, layer));
+        let truth = truth_of(&scene, 1e-2);
+        let map = Map::from(&scene);
+        let error = relative_l1(map.values(), truth.irradiance.as_flattened()).unwrap();
+        let sum = |values: &[f64]| values.iter().sum::<f64>();
+        let flux = sum(map.values()) / sum(truth.irradiance.as_flattened());
+        println!(
+            "layer {layer}: {error:.3}, flux {flux:.3}; truth {:.1e}",
+            truth.relative_error
+        );
+        assert!(error <= bound, "{error}");
+        assert!((flux - 1.0).abs() <= bound, "{flux}");
+    }
+}
+
+#[test]
+fn flat_water_lights_the_first_layer_alone() {
+    let mut scene = layer_map(2, 0);
+    scene["water"] = json!({});
+    assert!(Map::of(scene.clone()).mean(0) > 1.0);
+    scene["output"]["layer"] = json!(1);
+    let behind = Map::of(scene);
+    assert_eq!(behind.values().iter().copied().fold(0.0, f64::max), 0.0);
+}
+
+#[test]
+fn layers_are_planned_for_to_the_byte() {
+    for layers in [1, 2, 4] {
+        let mut renderer = harness::new_renderer(&caustica::config::RenderConfig::default());
+        let frame = harness::render_with(
+            &mut renderer,
+            &scene_files::scene(layer_map(layers, layers - 1)),
+        );
+        let memory = &frame.stats.memory;
+        println!("{layers} layers: {} bytes", memory.peak_bytes);
+        assert_eq!(memory.planned_peak_bytes, memory.peak_bytes, "{layers}");
+        assert_eq!(frame.stats.energy[0].closure.max(1e-5), 1e-5);
+    }
+}

@@ -1,0 +1,281 @@
+//! Light placed on meshes by reference planes, and by an image of every slice: the thesis's own ways beside hits.
+
+use std::sync::{Arc, OnceLock};
+
+use caustica::accuracy::metrics::relative_l1;
+use caustica::config::RenderConfig;
+use caustica::mesh::Mesh;
+use caustica::mesh::shapes::Shape;
+use caustica::render::RenderError;
+use caustica::scene::ResolvedScene;
+use serde_json::{Value, json};
+
+use super::harness::{Map, new_renderer, try_render};
+use super::scene_files;
+
+/// Texels along a side of the objects' maps.
+const SIDE: usize = 64;
+
+/// A shape of the catalogue.
+fn shape(name: &str) -> Arc<Mesh> {
+    static MADE: OnceLock<Vec<(&str, Arc<Mesh>)>> = OnceLock::new();
+    let made = MADE.get_or_init(|| {
+        ["sphere", "teapot", "torus_knot", "plate"]
+            .map(|name| (name, Arc::new(Shape::named(name).unwrap().mesh().unwrap())))
+            .to_vec()
+    });
+    made.iter().find(|(n, _)| *n == name).unwrap().1.clone()
+}
+
+/// A shape 1 m under waves that focus on it; `quality` on top of the dials that all have.
+fn under_waves(name: &str, quality: Value, output: Value) -> ResolvedScene {
+    let mesh = shape(name);
+    let size = (mesh.max_m - mesh.min_m).max_element();
+    let mut scene = json!({
+        "water": {
+            "waves": [
+                { "kind": "sine", "amplitude_m": 0.012, "wavelength_m": 0.5, "direction_deg": 20 },
+                { "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 0.37, "direction_deg": 110, "phase_deg": 40 }
+            ],
+            "absorption_per_m": [0.3, 0.07, 0.03]
+        },
+        "floor": { "depth_m": 1.6, "size_m": [3, 3] },
+        "lights": [{ "kind": "sun", "elevation_deg": 65, "azimuth_deg": 30, "irradiance_w_m2": [900, 950, 1000] }],
+        "objects": [{ "mesh": mesh.id, "translation_m": [0, -1, 0], "scale": 0.6 / f64::from(size) }],
+        "camera": { "position_m": [0.4, -0.2, 1.0], "target_m": [0, -1, 0] },
+        "quality": { "water_cells": 96, "level_map_texels": SIDE },
+        "output": output
+    });
+    for (key, value) in quality.as_object().unwrap() {
+        scene["quality"][key] = value.clone();
+    }
+    scene_files::with_meshes(scene, &[mesh])
+}
+
+/// The map on the object.
+fn on_object(name: &str, quality: Value) -> Map {
+    let output = json!({ "kind": "irradiance_map", "receiver": 0 });
+    Map::from(&under_waves(name, quality, output))
+}
+
+fn planes(count: u32, slicing: &str) -> Value {
+    json!({ "placement": "planes", "planes": count, "slicing": slicing })
+}
+
+fn warns(map: &Map, code: &str) -> bool {
+    map.stats.warnings.iter().any(|w| w.code == code)
+}
+
+#[test]
+fn smart_slicing_gives_the_same_bytes_with_fewer_planes() {
+    for (name, most) in [("sphere", 0.6), ("teapot", 0.8), ("torus_knot", 1.0)] {
+        for count in [2, 9, 101] {
+            let uniform = on_object(name, planes(count, "uniform"));
+            let smart = on_object(name, planes(count, "smart"));
+            let (all, some) = (&uniform.stats.planes[0], &smart.stats.planes[0]);
+            println!("{name}, {count} planes: {some:?}");
+            let values =
+                |map: &Map| -> Vec<u64> { map.values().iter().map(|v| v.to_bits()).collect() };
+            assert_eq!(values(&uniform), values(&smart), "{name}, {count}");
+            assert!(uniform.mean(0) > 1.0, "{name} is dark");
+            assert_eq!((all.specified, all.used, all.sub_boxes), (count, count, 1));
+            assert!(some.used >= 1 && some.used <= count && some.sub_boxes <= some.used);
+            if count == 101 {
+                assert!(f64::from(some.used) <= most * 101.0, "{name}: {some:?}");
+            }
+            assert_eq!(all.beams, 2 * 96 * 96);
+            assert_eq!(all.beams_kept, some.beams_kept);
+            assert!(all.beams_kept > 0 && all.beams_kept < all.beams);
+        }
+    }
+}
+
+#[test]
+fn many_planes_come_to_what_hits_give() {
+    let hit = on_object("sphere", json!({}));
+    assert!(hit.stats.planes.is_empty());
+    let mut last = f64::INFINITY;
+    for count in [5, 17, 65, 257] {
+        let map = on_object("sphere", planes(count, "smart"));
+        let error = relative_l1(map.values(), hit.values()).unwrap();
+        println!(
+            "{count} planes: {error:.4} from hits, closure {:.2e}",
+            map.closure()
+        );
+        assert!(error < last, "{count}: {error} after {last}");
+        last = error;
+    }
+    // What is left is the silhouette, whose texels planes light wholly or not at all: it goes with the texels.
+    let finer = |mut quality: Value| {
+        quality["level_map_texels"] = json!(2 * SIDE);
+        on_object("sphere", quality)
+    };
+    let (hit, map) = (finer(json!({})), finer(planes(257, "smart")));
+    let error = relative_l1(map.values(), hit.values()).unwrap();
+    println!("257 planes on twice the texels: {error:.4} from hits");
+    assert!(error < 0.7 * last, "{error} of {last}");
+}
+
+#[test]
+fn a_slice_image_for_each_plane_gives_the_same_picture() {
+    for (name, count) in [("sphere", 33), ("teapot", 50), ("torus_knot", 20)] {
+        let uniform = on_object(name, planes(count, "uniform"));
+        let volumetric = on_object(name, json!({ "method": "volumetric", "planes": count }));
+        let differing = uniform
+            .texels
+            .iter()
+            .zip(&volumetric.texels)
+            .filter(|(a, b)| a != b)
+            .count();
+        let lit = uniform.texels.iter().filter(|t| t[0] > 0.0).count();
+        println!("{name}, {count} planes: {differing} of {lit} lit texels differ");
+        // A texel whose depth lies on a slice's border to the last bits may go to either; clipping moves such depths.
+        assert!(differing <= lit / 200, "{name}: {differing} of {lit}");
+        assert!(lit > SIDE * SIDE / 10);
+        let stats = &volumetric.stats.planes[0];
+        assert_eq!((stats.used, stats.sub_boxes), (count, 1));
+        assert_eq!(stats.beams_kept, uniform.stats.planes[0].beams_kept);
+        let memory = &volumetric.stats.memory;
+        assert_eq!(memory.planned_peak_bytes, memory.peak_bytes);
+    }
+}
+
+#[test]
+fn a_plate_across_the_light_takes_one_plane() {
+    let scene = |quality: Value| {
+        let mut resolved = under_waves(
+            "plate",
+            quality,
+            json!({ "kind": "irradiance_map", "receiver": 0 }),
+        );
+        let caustica::scene::Light::Sun(sun) = &mut resolved.scene.lights[0] else {
+            panic!("no sun");
+        };
+        sun.elevation_deg = 90.0;
+        resolved
+    };
+    let hit = Map::from(&scene(json!({})));
+    let map = Map::from(&scene(planes(9, "smart")));
+    let stats = &map.stats.planes[0];
+    let error = relative_l1(map.values(), hit.values()).unwrap();
+    println!("{stats:?}, {error:.2e} from hits");
+    assert_eq!((stats.specified, stats.used, stats.sub_boxes), (9, 1, 1));
+    assert!(error < 0.01, "{error}");
+}
+
+#[test]
+fn the_floor_gets_nearly_the_same_shadow() {
+    let output = json!({ "kind": "irradiance_map", "receiver": "floor", "width": 96, "height": 96,
+                         "min_m": [-1, -1], "max_m": [1, 1] });
+    let map = |quality: Value| Map::from(&under_waves("sphere", quality, output.clone()));
+    let hit = map(json!({}));
+    let dark = |map: &Map| map.texels.iter().filter(|t| t[0] < 1.0).count();
+    assert!(dark(&hit) > 100, "no shadow");
+    let mut bare = under_waves("sphere", json!({}), output.clone());
+    bare.scene.objects.clear();
+    bare.meshes.clear();
+    let bare = Map::from(&bare);
+    let lost = relative_l1(bare.values(), hit.values()).unwrap();
+    for quality in [
+        planes(101, "uniform"),
+        planes(101, "smart"),
+        json!({ "method": "volumetric", "planes": 101 }),
+    ] {
+        let placed = map(quality);
+        let error = relative_l1(placed.values(), hit.values()).unwrap();
+        println!(
+            "shadow {lost:.4}, by planes {error:.4} off, {} and {} dark texels",
+            dark(&placed),
+            dark(&hit)
+        );
+        assert!(error < 0.1 * lost, "{error} of {lost}");
+    }
+}
+
+#[test]
+fn what_planes_do_not_conserve_is_said() {
+    let few = on_object("sphere", planes(4, "uniform"));
+    let many = on_object("sphere", planes(201, "uniform"));
+    println!("closure {:.2e} and {:.2e}", few.closure(), many.closure());
+    for map in [&few, &many] {
+        let warned = map
+            .stats
+            .warnings
+            .iter()
+            .find(|w| w.code == "planes_do_not_conserve");
+        let account = &map.stats.energy[0];
+        let flux_w = warned.unwrap().flux_w.unwrap();
+        let largest = (0..3).map(|c| flux_w[c].abs() / account.emitted_w[c]);
+        let largest = largest.fold(0.0, f64::max);
+        assert!((largest / account.closure - 1.0).abs() < 1e-9);
+    }
+    // What is left with many planes is the silhouette, whose texels are wholly in or out.
+    assert!(many.closure() < 0.01, "{}", many.closure());
+    assert!(!warns(
+        &on_object("sphere", json!({})),
+        "planes_do_not_conserve"
+    ));
+}
+
+#[test]
+fn wide_footprints_light_the_same_texels() {
+    // Eight cells over the object: on the finer map every footprint is wide and shared out over lanes, on the coarser none is.
+    for quality in [
+        planes(33, "smart"),
+        json!({ "method": "volumetric", "planes": 33 }),
+    ] {
+        let landed_w = |texels: u32| {
+            let mut quality = quality.clone();
+            quality["water_cells"] = json!(8);
+            quality["level_map_texels"] = json!(texels);
+            on_object("sphere", quality).stats.energy[0].landed_w[1]
+        };
+        let (wide, narrow) = (landed_w(512), landed_w(64));
+        println!("{wide} W and {narrow} W landed");
+        assert!(narrow > 1.0 && (wide / narrow - 1.0).abs() < 0.02);
+    }
+}
+
+#[test]
+fn slices_over_budget_are_refused_with_numbers() {
+    let config = RenderConfig {
+        memory_budget_mib: 128,
+        ..RenderConfig::default()
+    };
+    let mut renderer = new_renderer(&config);
+    let output = json!({ "kind": "irradiance_map", "receiver": 0 });
+    let scene = |planes: u32| {
+        let quality = json!({ "method": "volumetric", "planes": planes, "level_map_texels": 256 });
+        under_waves("sphere", quality, output.clone())
+    };
+    // Once for the level map, which is no slice.
+    try_render(&mut renderer, &scene(8)).unwrap();
+    let few = try_render(&mut renderer, &scene(8)).unwrap();
+    assert!(few.stats.memory.peak_bytes <= 128 << 20);
+    let Err(RenderError::OverBudget {
+        needed_bytes,
+        budget_bytes,
+        ..
+    }) = try_render(&mut renderer, &scene(512))
+    else {
+        panic!("512 slices of 256 KiB fit into 128 MiB");
+    };
+    assert_eq!(budget_bytes, 128 << 20);
+    let slices = 4 * 256 * 256;
+    assert_eq!(
+        needed_bytes - few.stats.memory.planned_peak_bytes,
+        (512 - 8) * slices
+    );
+}
+
+#[test]
+fn a_view_shows_what_the_map_holds() {
+    let output = json!({ "kind": "view", "width": 96, "height": 64, "layers": ["radiance", "irradiance"], "format": "exr" });
+    let scene = |quality: Value| under_waves("sphere", quality, output.clone());
+    let hit = Map::from(&scene(json!({})));
+    let placed = Map::from(&scene(planes(129, "smart")));
+    let error = relative_l1(placed.values(), hit.values()).unwrap();
+    println!("views {error:.4} apart");
+    assert!(error < 0.1, "{error}");
+    assert!(hit.mean(0) > 1.0);
+}
