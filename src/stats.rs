@@ -20,7 +20,7 @@ pub struct Stats {
     pub time_ms: TimeStats,
     /// Memory, bytes.
     pub memory: MemoryStats,
-    /// One account per sun that shines into the water.
+    /// One account per light that shines into or under the water.
     pub energy: Vec<EnergyAccount>,
     /// One entry per sun and object that got its light by planes; absent otherwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -128,7 +128,7 @@ pub struct CacheStats {
 pub struct EnergyAccount {
     /// Index into `lights`.
     pub light: u32,
-    /// Falls on the simulated piece of water.
+    /// Falls on the simulated piece of water; of a point light under water what goes in the simulated directions.
     pub emitted_w: [f64; 3],
     /// Arrives on receiver maps.
     pub landed_w: [f64; 3],
@@ -201,7 +201,8 @@ pub struct ChosenDials {
 /// How radiance becomes display values: display = tone_curve(radiance · scale).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ExposureStats {
-    /// Radiance of a perfect white, horizontal, dry surface under the scene's lights, W/(m² sr); it is shown as 1 at 0 EV.
+    /// Radiance of a perfect white, horizontal, dry surface under the scene's suns and skies, and of one that faces each point light in the
+    /// middle of what is looked at, at the height of the floor (at least 0.1 m away), W/(m² sr); it is shown as 1 at 0 EV.
     pub white_radiance: f64,
     /// Requested stops.
     pub ev: f64,

@@ -33,6 +33,18 @@ fn push_wide(beam_index: u32) {
     atomicMax(&wide_queue[0], min(slot + 1u, MOST_GROUPS));
 }
 
+// The largest of what the workgroup's cells emit, as the bits of an f32, which order like the numbers.
+var<workgroup> largest: atomic<u32>;
+// Counts of the largest cell's flux when the scale is its own: all 64 cells fit u32 together.
+const CELL_COUNTS: f32 = 16777216.0;
+
+// How much finer a workgroup may count whose cells emit at most `most`; a power of two.
+fn finer_for(most: f32) -> f32 {
+    if most <= 0.0 { return 1.0; }
+    let room = min(CELL_COUNTS / (most * light.triangle_scale), light.energy_scale / light.triangle_scale);
+    return max(bitcast<f32>(bitcast<u32>(room) & 0x7f800000u), 1.0);
+}
+
 struct CellSums {
     emitted: f32,
     reflected: f32,
@@ -83,6 +95,12 @@ fn deposit_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
             losses.extinguished += sums.losses.extinguished;
             losses.left += sums.losses.left;
         }
+    }
+    if light.kind == POINT {
+        // To a near light far cells are smaller than the near ones by many powers of ten.
+        atomicMax(&largest, bitcast<u32>(emitted));
+        workgroupBarrier();
+        finer = finer_for(bitcast<f32>(atomicLoad(&largest)));
     }
     note_term(TERM_EMITTED, emitted);
     note_term(TERM_REFLECTED, reflected);

@@ -166,6 +166,7 @@ fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     let above = max(split.level, 1u) - 1u;
     // A part has 4^−level of a beam's flux, and a workgroup at most 256 of them (of the beams' own parts twice that).
     finer = min(f32(1u << (2u * above)), light.energy_scale / light.triangle_scale);
+    straight = light.kind == POINT;
     let count = atomicLoad(&split_queue[QUEUE_COUNT + above]);
     // Whether the next level fits is decided by what is here, before anything is queued: the same beams are torn every time.
     let is_last = split.level >= light.split_levels || count > split.capacity / 4u;

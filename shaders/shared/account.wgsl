@@ -5,7 +5,14 @@ var<workgroup> account: array<atomic<u32>, 9>;
 // Counts finer than those of whole beams, a power of two: what notes small parts sets it before the first.
 var<private> finer: f32 = 1.0;
 
+// Whether terms go straight to the global sums: the parts of a near point light's beams are of too different size for one scale.
+var<private> straight: bool = false;
+
 fn note_term(term: u32, unit_flux: f32) {
+    if straight {
+        if unit_flux > 0.0 { add_energy(term, unit_flux * light.energy_scale); }
+        return;
+    }
     let counts = u32(unit_flux * (light.triangle_scale * finer) + 0.5);
     if counts > 0u { atomicAdd(&account[term], counts); }
 }

@@ -36,6 +36,10 @@ const BEAM_ACCOUNT_COUNTS: f64 = 8_388_608.0;
 
 /// Pieces of the grid along one axis in which the largest beam is looked for.
 const PIECES: u32 = 24;
+/// More than all beams of a point light together: all directions, as often as waves could stand behind waves.
+const MOST_LAMP_SR: f64 = 1024.0 * 2.0 * TAU;
+/// Below this the scales would leave the range of f32; such a light brings nothing that could be seen.
+const LEAST_BEAM_SR: f64 = 1e-20;
 /// Largest solid angle per area of the octahedral square, sr, and half as much again for triangles bent over its edges.
 const OCTAHEDRAL_SR: f64 = 1.5 * 5.196_152_422_706_632;
 
@@ -52,41 +56,43 @@ fn largest_beam(facts: &SceneFacts, sun: &SunFacts) -> f64 {
     }
 }
 
-/// Largest solid angle of half a cell, sr: at most its area over the square of its least distance, and never more than half of all
-/// directions.
+/// Largest solid angle of half a cell, sr: its area seen from the light's height and the steepest slope, over the square of its least
+/// distance, and never more than half of all directions.
 fn lamp_beam(facts: &SceneFacts, sun: &SunFacts, position_m: DVec3, cell: DVec2) -> f64 {
     let grid = &sun.grid;
     // Per piece of an axis: the largest cell side in it, and its least distance from the light's foot.
-    let pieces = |low: f64, high: f64, step: f64| -> Vec<(f64, f64)> {
+    let pieces = |axis: usize| -> Vec<(f64, f64)> {
+        let (low, high) = (grid.places.min[axis], grid.places.max[axis]);
+        let foot_m = [position_m.x, position_m.z][axis];
+        let aside_m = |s: f64| grid.foot_m[axis] + s * (1.0 + grid.bend_per_m2 * s * s) - foot_m;
         let at = |k: u32| low + (high - low) * f64::from(k) / f64::from(PIECES);
         (0..PIECES)
             .map(|k| {
-                let (from, to) = (at(k) - step, at(k + 1) + step);
-                let far = from.abs().max(to.abs());
-                let near = if from < 0.0 && to > 0.0 {
+                let (from, to) = (at(k) - cell[axis], at(k + 1) + cell[axis]);
+                let (from_m, to_m) = (aside_m(from), aside_m(to));
+                let near_m = if from_m < 0.0 && to_m > 0.0 {
                     0.0
                 } else {
-                    from.abs().min(to.abs())
+                    from_m.abs().min(to_m.abs())
                 };
-                (
-                    step * grid.stretch(far),
-                    near * (1.0 + grid.bend_per_m2 * near * near),
-                )
+                (cell[axis] * grid.stretch(from.abs().max(to.abs())), near_m)
             })
             .collect()
     };
-    let along_x = pieces(grid.places.min.x, grid.places.max.x, cell.x);
-    let along_z = pieces(grid.places.min.y, grid.places.max.y, cell.y);
-    let rise_m = (position_m.y - facts.surface.max_height_m()).max(0.0);
-    let tilted = facts.surface.max_slope().hypot(1.0);
-    let mut largest: f64 = 0.0;
+    let (along_x, along_z) = (pieces(0), pieces(1));
+    let crest_m = facts.surface.max_height_m();
+    let rise_m = (position_m.y - crest_m).max(0.0);
+    let steepest = facts.surface.max_slope();
+    let mut largest = LEAST_BEAM_SR;
     for &(side_x, near_x) in &along_x {
         for &(side_z, near_z) in &along_z {
-            let distance2 = rise_m * rise_m + near_x * near_x + near_z * near_z;
-            let area = 0.5 * side_x * side_z * tilted;
+            let distance_m = rise_m.hypot(near_x.hypot(near_z));
             // Written so that no distance at all counts as half of all directions.
-            largest = largest.max(if area < TAU * distance2 {
-                area / distance2
+            let facing =
+                ((position_m.y + crest_m) / distance_m + steepest).min(steepest.hypot(1.0));
+            let area = 0.5 * side_x * side_z * facing;
+            largest = largest.max(if area < TAU * distance_m * distance_m {
+                area / (distance_m * distance_m)
             } else {
                 TAU
             });
@@ -137,10 +143,13 @@ pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
     } else {
         1.0
     };
-    let all = largest_beam(facts, &facts.suns[index])
-        * 2.0
-        * f64::from(facts.quality.water_cells).powi(2)
-        * times;
+    let sun = &facts.suns[index];
+    let beams = 2.0 * f64::from(facts.quality.water_cells).powi(2);
+    let mut all = largest_beam(facts, sun) * beams;
+    if sun.source.position_m().is_some() {
+        all = all.min(MOST_LAMP_SR);
+    }
+    let all = all * times;
     (2.0_f64.powi(60) / all).log2().floor().exp2()
 }
 
@@ -214,16 +223,32 @@ fn lamp_on_floor(sun: &SunFacts, rect: &Rect, y_m: f64, ior: f64, texels: f64) -
     let (low, high) = (rect.min - foot_m, rect.max - foot_m);
     let corner = DVec3::new(low.x, -height_m, low.y);
     let (along_x, along_z) = (DVec3::X * (high.x - low.x), DVec3::Z * (high.y - low.y));
-    let whole = solid_angle(corner, along_x, along_x + along_z)
-        + solid_angle(corner, along_x + along_z, along_z);
+    let whole = (solid_angle(corner, along_x, along_x + along_z)
+        + solid_angle(corner, along_x + along_z, along_z))
+    .abs()
+    .min(entering_sr(sun));
     let aside_m = low.max(-high).max(DVec2::ZERO).length();
     let area_m2 = (high.x - low.x) * (high.y - low.y) / texels;
     let distance_m = height_m.hypot(aside_m);
-    let mean = whole.abs() / texels;
+    let mean = whole / texels;
     TexelFlux {
         brightest: (area_m2 * height_m / distance_m.powi(3)).min(TAU).max(mean),
         mean,
     }
+}
+
+/// Solid angle of the water's window at rest, seen from a point light above it; of all directions for one under it.
+fn entering_sr(sun: &SunFacts) -> f64 {
+    let Source::Point { position_m } = sun.source else {
+        return 2.0 * TAU;
+    };
+    let low = sun.window.min - DVec2::new(position_m.x, position_m.z);
+    let size = sun.window.size();
+    let corner = DVec3::new(low.x, -position_m.y.max(1e-9), low.y);
+    let (along_x, along_z) = (DVec3::X * size.x, DVec3::Z * size.y);
+    let near = solid_angle(corner, along_x, along_x + along_z);
+    let far = solid_angle(corner, along_x + along_z, along_z);
+    (near + far).abs()
 }
 
 /// Whether meshes get their light by planes.

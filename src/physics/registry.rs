@@ -338,7 +338,7 @@ pub const LAMP_TWINS: [Twin; 3] = [
         call: "vec4f(point_angle(a[0], a[1]), 0.0, 0.0, 0.0)",
         original: |a| Some([solid_angle::point_angle(a[0], a[1]), 0.0, 0.0, 0.0]),
         tolerance: tolerance(
-            0.0,
+            1e-37,
             6e-7,
             "a division of 2.5 ulp, a polynomial of 1 ulp and the rounding of π",
         ),

@@ -470,7 +470,7 @@ impl SceneFacts {
             let finest_m =
                 sun.grid.places.size().min_element() / f64::from(self.quality.water_cells);
             if let Source::Point { position_m } = sun.source
-                && position_m.y < CLOSE_CELLS * finest_m
+                && sun.window.distance_m(position_m) < CLOSE_CELLS * finest_m
             {
                 let mut warning = Warning::new(
                     "light_close_to_water",

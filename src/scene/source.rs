@@ -11,6 +11,8 @@ use crate::waves::WaterSurface;
 
 /// Largest cell of a point light's grid over its smallest, at most.
 const MOST_STRETCH: f64 = 9.0;
+/// Sides of the window beyond which a light is far aside.
+const FAR_ASIDE: f64 = 4.0;
 /// Least depth and distance that a direction can be told from, m.
 const TINY_M: f64 = 1e-6;
 
@@ -117,7 +119,7 @@ impl Source {
 pub struct Grid {
     /// Range of s, m; of a light under water of the octahedral places.
     pub places: Rect,
-    /// The point under the light, local (x, z); (0, 0) of suns and lights under water.
+    /// The point under the light, local (x, z); (0, 0) of suns, lights far aside and lights under water.
     pub foot_m: DVec2,
     /// β, 1/m²; 0: all cells are alike.
     pub bend_per_m2: f64,
@@ -126,16 +128,21 @@ pub struct Grid {
 impl Grid {
     /// The grid over `window` for light from `source`.
     pub fn over(window: Rect, source: &Source) -> Self {
+        let even = Self {
+            places: window,
+            foot_m: DVec2::ZERO,
+            bend_per_m2: 0.0,
+        };
         let Source::Point { position_m } = *source else {
-            return Self {
-                places: window,
-                foot_m: DVec2::ZERO,
-                bend_per_m2: 0.0,
-            };
+            return even;
         };
         let foot_m = DVec2::new(position_m.x, position_m.z);
         let (low, high) = (window.min - foot_m, window.max - foot_m);
         let reach_m = low.abs().max(high.abs()).max_element();
+        if reach_m > FAR_ASIDE * window.size().max_element() {
+            // Its light changes little over the window, and f32 could not tell its places from so far.
+            return even;
+        }
         let steep = reach_m / position_m.y.max(TINY_M * reach_m);
         let stretch = (1.0 + 0.25 * steep * steep).min(MOST_STRETCH);
         // x(S) = reach with x′(S) = stretch.

@@ -193,6 +193,7 @@ pub struct Sun {
 /// A point that sends light out evenly all around, above or under the water.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
+#[schema(example = json!({ "kind": "point", "position_m": [0.5, 1.1, -0.3], "intensity_w_sr": [60, 50, 38] }))]
 pub struct PointLight {
     /// Always `point`.
     pub kind: PointKind,

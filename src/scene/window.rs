@@ -34,6 +34,13 @@ impl Rect {
         }
     }
 
+    /// Distance of a point above or under the rectangle at rest, m.
+    pub(super) fn distance_m(&self, p: DVec3) -> f64 {
+        let at = DVec2::new(p.x, p.z);
+        let aside = (self.min - at).max(at - self.max).max(DVec2::ZERO);
+        aside.length().hypot(p.y)
+    }
+
     pub(super) fn grown(self, by: f64) -> Self {
         Self {
             min: self.min - by,

@@ -122,7 +122,7 @@ fn what_is_not_followed_is_said() {
         ["light_under_floor"]
     );
     assert_eq!(
-        codes(pool([0.0, 1e-3, 0.0], json!({}), 8)),
+        codes(pool([0.0, 1e-9, 0.0], json!({}), 8)),
         ["light_close_to_water"]
     );
     let mut around = pool([0.0, -1.0, 0.0], json!({}), 8);

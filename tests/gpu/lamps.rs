@@ -121,9 +121,9 @@ fn a_lamp_under_water_gives_the_closed_form() {
         [0.0, 0.0, 0.0],
         [0.4, -1.7, 0.4],
     ] {
-        let (l1, worst) = against_closed_form(position, 1.333, 0.2, 256);
+        let (l1, worst) = against_closed_form(position, 1.333, 0.2, 512);
         assert!(l1 <= 1e-3, "{position:?}: {l1:e}");
-        assert!(worst <= 5e-3, "{position:?}: {worst:e}");
+        assert!(worst <= 1e-2, "{position:?}: {worst:e}");
     }
 }
 
@@ -132,7 +132,7 @@ fn assert_like_reference(scene: Value, tolerance: f64, context: &str) {
     let map = Map::from(&resolved);
     let settings = ReferenceSettings {
         target_error: Some(2e-3),
-        max_rays: 60_000_000,
+        max_rays: 40_000_000,
         ..ReferenceSettings::default()
     };
     let truth = reference::irradiance_map(&resolved, &settings, &|_| {}).unwrap();
@@ -309,7 +309,11 @@ fn a_lamp_on_the_water_gives_half_its_light_to_it() {
     let mut scene = pool(json!([lamp([0.0, 1e-3, 0.0])]), json!({}), 64, 32);
     scene["output"]["min_m"] = json!([-4, -4]);
     scene["output"]["max_m"] = json!([4, 4]);
+    scene["quality"]["water_cells"] = json!(1024);
     let map = Map::of(scene);
+    // Far cells are a million times smaller to the light than near ones, and none is lost.
+    println!("on the water: closure {:.1e}", map.closure());
+    assert!(map.closure() <= CLOSURE, "{:?}", map.stats.energy);
     let emitted = map.stats.energy[0].emitted_w[0];
     assert!(emitted <= std::f64::consts::TAU, "{emitted}");
     assert!(emitted > 0.9 * std::f64::consts::TAU, "{emitted}");
