@@ -317,7 +317,7 @@ pub fn receivers(
             axis: vec4(level_box.axis, 0.0),
             s_per_m: level_box.s_per_m as f32,
             planes: if facts.quality.has_planes() {
-                facts.quality.planes
+                facts.planes_of(object)
             } else {
                 0
             },
