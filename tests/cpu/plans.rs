@@ -306,7 +306,7 @@ fn layers_multiply_the_maps_of_objects() {
         .find(|p| p.name == "irradiance")
         .unwrap();
     assert!(
-        irradiance.reason.contains("3 layers each"),
+        irradiance.reason.contains("3 for each object"),
         "{}",
         irradiance.reason
     );
