@@ -33,7 +33,9 @@ fn head(text: &mut String, e: &Experiment) {
         On {} ({}), {} cores; {}² water cells, {}² texels, median of {} interleaved runs; times are the GPU's, of whole frames \
         with level maps cached. Errors are relative L1 of the map on the mesh against the float64 reference.\n\n\
         The thesis ran on a GeForce 6800 with all beams on every plane; ours are culled against the mesh's map for all three ways \
-        alike, deposit exact coverage, and take no test per pixel of a rasteriser. Ratios compare, milliseconds do not. In the \
+        alike, deposit exact coverage, and take no test per pixel of a rasteriser. Slices cost an image per plane to draw, mask and clear, \
+        which goes by texels, and save the look at the level map under each footprint: which of the two is more is for the times to \
+        say. Ratios compare, milliseconds do not. In the \
         thesis's table 5-1 the volumetric times of teapot and sphere agree to the last digit in every row, so one of the two \
         columns is a copy.\n",
         e.adapter.name, e.adapter.driver, e.cores, e.water_cells, e.texels, e.runs
