@@ -18,82 +18,92 @@ fn truth_of(scene: &ResolvedScene, error: f64) -> Truth {
     truth(scene, &settings, &|_| {}, &|| false).unwrap()
 }
 
-/// The sides of the box in `scenes/box_sides.json`, small, with so many layers.
-fn box_sides(layers: &str) -> ResolvedScene {
-    let mut scene = scene_files::load(
+/// Pixels of the truth along x and y.
+const SIZE: [usize; 2] = [64, 48];
+/// Pixels of the renderer for each of those along both: the truth is the mean over a pixel, a picture is what its middle shows.
+const FINER: usize = 4;
+
+/// The sides of the box in `scenes/box_sides.json`, with so many layers, in a picture `finer` times as large as that of the truth.
+fn box_sides(layers: &str, finer: usize) -> ResolvedScene {
+    let [width, height] = SIZE.map(|n| (n * finer).to_string());
+    scene_files::load(
         "box_sides",
         &[
-            ("/output/width", "64"),
-            ("/output/height", "48"),
+            ("/output/width", &width),
+            ("/output/height", &height),
             ("/output/format", "exr"),
             ("/output/layers", "irradiance,normal,albedo"),
             ("/quality/layers", layers),
         ],
-    );
-    scene.scene.quality.water_cells = 512;
-    scene
+    )
 }
 
-/// Pixels of the box's sides of which `towards` says yes to the normal.
-fn on_sides(frame: &Frame, towards: impl Fn(&[f64; 3]) -> bool) -> Vec<usize> {
-    let normals = harness::layer(frame, LayerName::Normal);
-    let albedos = harness::layer(frame, LayerName::Albedo);
-    let is_box = |at: &usize| albedos[*at][0] > 0.7 && normals[*at][1].abs() < 0.5;
-    let all = (0..normals.len()).filter(is_box);
-    all.filter(|&at| towards(&normals[at])).collect()
+/// A pixel of the truth: mean irradiance there, and the normal if all of it lies on the box.
+fn coarse(frame: &Frame) -> Vec<([f64; 3], Option<[f64; 3]>)> {
+    let [irradiance, normals, albedos] =
+        [LayerName::Irradiance, LayerName::Normal, LayerName::Albedo]
+            .map(|name| harness::layer(frame, name));
+    let width = SIZE[0] * FINER;
+    (0..SIZE[0] * SIZE[1])
+        .map(|at| {
+            let first = (at / SIZE[0]) * FINER * width + (at % SIZE[0]) * FINER;
+            let all: Vec<usize> = (0..FINER * FINER)
+                .map(|i| first + i / FINER * width + i % FINER)
+                .collect();
+            let mean = std::array::from_fn(|c| {
+                all.iter().map(|&i| irradiance[i][c]).sum::<f64>() / all.len() as f64
+            });
+            let normal = normals[first];
+            let is_one = all
+                .iter()
+                .all(|&i| normals[i] == normal && albedos[i][0] > 0.7);
+            (mean, is_one.then_some(normal))
+        })
+        .collect()
 }
 
-fn error_at(pixels: &[usize], frame: &Frame, truth: &Truth) -> f64 {
-    let seen = harness::layer(frame, LayerName::Irradiance);
-    let pick =
-        |values: &[[f64; 3]]| -> Vec<f64> { pixels.iter().flat_map(|&at| values[at]).collect() };
-    relative_l1(&pick(&seen), &pick(&truth.irradiance)).unwrap()
-}
-
-// Measured: see the assertions, whose bounds are about one and a half times the figures.
+// Bounds are about one and a half times what was measured.
 #[test]
 fn sides_away_from_the_light_are_lit_by_a_second_layer() {
-    let truth = truth_of(&box_sides("1"), 2e-2);
-    let mut away_errors = Vec::new();
-    let mut side_errors = Vec::new();
+    let truth = truth_of(&box_sides("1", 1), 2e-2);
+    let (mut side_errors, mut away_errors) = (Vec::new(), Vec::new());
     for layers in ["1", "2", "3"] {
-        let scene = box_sides(layers);
+        let scene = box_sides(layers, FINER);
         let mut renderer = harness::renderer();
         harness::render_with(&mut renderer, &scene);
         let frame = harness::render_with(&mut renderer, &scene);
         drop(renderer);
-        let sides = on_sides(&frame, |_| true);
-        let away = on_sides(&frame, |n| n[2] > 0.5);
-        assert!(away.len() > 150 && sides.len() > away.len() + 50);
-        let errors = (
-            error_at(&sides, &frame, &truth),
-            error_at(&away, &frame, &truth),
-        );
+        let pixels = coarse(&frame);
+        let error_where = |wanted: &dyn Fn([f64; 3]) -> bool| {
+            let of: Vec<usize> = (0..pixels.len())
+                .filter(|&at| pixels[at].1.is_some_and(wanted))
+                .collect();
+            let pick = |value: &dyn Fn(usize) -> [f64; 3]| -> Vec<f64> {
+                of.iter().flat_map(|&at| value(at)).collect()
+            };
+            let (seen, true_one) = (pick(&|at| pixels[at].0), pick(&|at| truth.irradiance[at]));
+            let flux = seen.iter().sum::<f64>() / true_one.iter().sum::<f64>();
+            (relative_l1(&seen, &true_one).unwrap(), flux, of.len())
+        };
+        let sides = error_where(&|n| n[1].abs() < 0.5);
+        let away = error_where(&|n| n[2] > 0.5);
         let stats = &frame.stats;
         println!(
-            "{layers} layers: {:.3} on the sides ({} pixels), {:.3} on the one away from the sun ({} pixels); {:.0} ms, {} bytes planned, {} held; truth {:.1e}",
-            errors.0,
-            sides.len(),
-            errors.1,
-            away.len(),
-            stats.time_ms.total,
-            stats.memory.planned_peak_bytes,
-            stats.memory.peak_bytes,
-            truth.relative_error
+            "{layers} layers: error, flux, pixels {sides:.3?} on the sides, {away:.3?} on the one away from the sun; {:.0} ms, {} bytes; truth {:.1e}",
+            stats.time_ms.total, stats.memory.peak_bytes, truth.relative_error
         );
-        assert!(stats.memory.peak_bytes <= stats.memory.planned_peak_bytes);
+        assert!(away.2 > 100 && sides.2 > away.2 + 50);
+        assert_eq!(stats.memory.peak_bytes, stats.memory.planned_peak_bytes);
         assert!(stats.energy[0].closure <= 1e-5, "{:?}", stats.energy);
-        side_errors.push(errors.0);
-        away_errors.push(errors.1);
+        side_errors.push(sides.0);
+        away_errors.push(away.0);
     }
     // One layer leaves it black.
     assert!((away_errors[0] - 1.0).abs() <= 1e-9, "{away_errors:?}");
-    assert!(away_errors[1] <= 0.35, "{away_errors:?}");
-    assert!(side_errors[1] < side_errors[0], "{side_errors:?}");
-    assert!(
-        (away_errors[2] - away_errors[1]).abs() <= 0.05,
-        "{away_errors:?}"
-    );
+    assert!(away_errors[1] <= 0.5, "{away_errors:?}");
+    assert!(side_errors[1] <= 0.85 * side_errors[0], "{side_errors:?}");
+    // A box has two surfaces.
+    assert_eq!(away_errors[2], away_errors[1]);
 }
 
 /// The box on whose sides tilted rays fall, as a map of one of its layers.
