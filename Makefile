@@ -36,7 +36,7 @@ lint: deps
 bench: deps
 	$(CARGO) bench --locked --bench caustica
 
-# Measure what each dial buys, and write docs/accuracy.md; minutes on a quiet machine.
+# Measure what each dial buys, and write docs/accuracy.md and docs/level-maps.md; an hour or two on a quiet machine.
 docs: deps
 	$(CARGO) run --release --locked --example make_docs
 

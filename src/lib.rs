@@ -25,7 +25,8 @@
 //! # How light is carried
 //!
 //! A grid of water vertices over just the rectangle that can light the receivers sends refracted rays; each ends on the floor
-//! (exactly) or on a mesh (marched into its level map; at the map's edges tried against the mesh itself). Between three rays goes
+//! (exactly) or on a mesh (marched into its level map; at the map's edges tried against the mesh itself). A hierarchy over the objects
+//! says which a ray may meet, and each object's surfaces along the light (`quality.layers`) are receivers of their own. Between three rays goes
 //! a beam, whose flux is laid on the receiver's map in proportion to the exactly covered share of each texel — never divided by a
 //! footprint that can vanish — as integer sums. Beams that straddle receivers are halved with rays of their own, and their parts
 //! again while they straddle. The energy account closes: emitted = landed + absorbed + scattered + reflected + left the region +
@@ -46,6 +47,7 @@
 //! | [`render`] | runs plans; self-check |
 //! | [`reference`] | float64 truth by plain rays: another algorithm, not a port |
 //! | [`accuracy`] | error of images, dials and their sweeps, plots and reports |
+//! | [`experiment`] | published experiments done again |
 //! | [`tuning`] | from a wanted error or time to dials |
 //! | [`image`] | PNG, EXR, tone curve |
 //! | [`jobs`] | bounded queue and the one GPU thread |
@@ -58,6 +60,7 @@
 pub mod accuracy;
 pub mod cli;
 pub mod config;
+pub mod experiment;
 pub mod frame;
 pub mod gpu;
 pub mod http;

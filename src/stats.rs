@@ -98,6 +98,10 @@ pub struct MemoryStats {
     pub peak_bytes: u64,
     /// The limit a plan is checked against.
     pub budget_bytes: u64,
+    /// What the GPU's allocator had given out at the end of the frame, other resources included; absent where nobody asked or the
+    /// backend does not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub allocated_bytes: Option<u64>,
     /// Level-map cache.
     pub level_maps: CacheStats,
 }
@@ -149,7 +153,7 @@ pub struct PlaneStats {
     pub light: u32,
     /// Index into `objects`.
     pub object: u32,
-    /// Planes that were asked for.
+    /// Planes that were asked for: `quality.planes`, fewer where level of detail made the map smaller.
     pub specified: u32,
     /// Planes that were used.
     pub used: u32,

@@ -20,6 +20,8 @@ struct Light {
     foot_m: vec2f,             // of a point light over the water: the local (x, z) around which the grid is finer; of a sun 0
     bend_per_m2: f32,          // how much coarser the grid gets with the distance from there
     kind: u32,                 // SUN, POINT or SUBMERGED
+    objects_min_m: vec2f,      // lower corner of the water whose light can reach an object, local (x, z)
+    objects_max_m: vec2f,      // its upper corner, below the lower one where no object is under water
 }
 
 const SUN: u32 = 0u;

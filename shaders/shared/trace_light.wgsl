@@ -4,22 +4,27 @@
 // Further layers are only met over an edge: what lies under a smooth front is reached by rays that come in beside it.
 
 const FAR_M: f32 = 1e6;
-// Texels in depth that a surface is held for farther away when it stands across what was struck; when it faces the other way, twice.
+// Texels in depth that a surface is held for farther away when it stands across what was struck; when it faces the other way, twice;
+// and once more when one of the two faces the light's axis and the other does not.
 const TURNED_TEXELS: f32 = 8.0;
 
 // The layer that a hit at `q` (map space) belongs to: of the surfaces at its texel the one nearest in depth that faces as the
 // triangle does. At a rim two surfaces meet, and depth alone would give a stripe of the one to the other.
-fn layer_of(r: Receiver, q: vec3f, met: MeshHit) -> u32 {
+fn layer_of(r: Receiver, index: u32, q: vec3f, met: MeshHit) -> u32 {
     let texel = clamp(vec2i(floor(q.xy)), vec2i(0), vec2i(i32(r.map_width) - 1));
     let normal = (1.0 - met.u - met.v) * unpack_normal(geometry[met.triangle].w) + met.u * unpack_normal(geometry[met.triangle + 1u].w)
         + met.v * unpack_normal(geometry[met.triangle + 2u].w);
+    let axis = r.axis.xyz;
+    let along = vec3f(dot(instances[index].mesh_x.xyz, axis), dot(instances[index].mesh_y.xyz, axis), dot(instances[index].mesh_z.xyz, axis));
+    let faces = dot(normal, along) < 0.0;
     let texels_per_s = sqrt(r.density_per_flux) / r.s_per_m;
     var best = 0u;
     var least = EMPTY_DEPTH;
     for (var layer = 0u; layer < light.layers; layer++) {
         let depth = layer_depth(r, layer, texel);
         if depth >= EMPTY_DEPTH { break; }
-        let turned = 1.0 - dot(unpack_normal(level_maps[layer_word(r, layer, texel)]), normalize(normal));
+        let own = unpack_normal(level_maps[layer_word(r, layer, texel)]);
+        let turned = 1.0 - dot(own, normalize(normal)) + select(1.0, 0.0, (dot(own, along) < 0.0) == faces);
         let distance = abs(depth - q.z) * texels_per_s + TURNED_TEXELS * turned;
         if distance < least {
             least = distance;
@@ -44,7 +49,7 @@ fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> H
         if met.t >= t_max { return nothing; }
         let q = o + d * met.t;
         var layer = 0u;
-        if light.layers > 1u { layer = layer_of(r, q, met); }
+        if light.layers > 1u { layer = layer_of(r, index, q, met); }
         return Hit(q.xy, met.t, i32(number + layer));
     }
     if t < 0.0 || t >= t_max { return nothing; }
@@ -78,7 +83,9 @@ fn trace_light(origin: vec3f, direction: vec3f, count: u32, has_floor: bool) -> 
         }
     }
     let inverse = safe_inverse(direction);
-    let end = instance_nodes(count);
+    // Light that enters beside this rectangle misses all objects, however the waves tilt it.
+    let may_meet = all(origin.xz >= light.objects_min_m) && all(origin.xz <= light.objects_max_m);
+    let end = select(0u, instance_nodes(count), may_meet);
     var node = 0u;
     while node < end {
         let step = step_instances(node, origin, inverse, best.t);

@@ -44,7 +44,7 @@ pub struct AccuracyArgs {
 }
 
 /// Reads `--truth-error`.
-fn truth_error(text: &str) -> Result<f64, String> {
+pub(super) fn truth_error(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(error) if (1e-6..=0.1).contains(&error) => Ok(error),
         _ => Err("accepted: a number, 0.000001 … 0.1".to_owned()),
@@ -129,7 +129,7 @@ fn dials(args: &AccuracyArgs, resolved: &ResolvedScene) -> Result<Vec<Dial>, Cli
 }
 
 /// Where the user's programs keep what can be made again.
-fn cache_folder() -> Option<PathBuf> {
+pub(super) fn cache_folder() -> Option<PathBuf> {
     let folder = std::env::var_os("XDG_CACHE_HOME")
         .map(PathBuf::from)
         .filter(|path| path.is_absolute())

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use super::error::CliError;
-use super::{accuracy, animate, calibrate, health, plan, render, selfcheck, serve};
+use super::{accuracy, animate, calibrate, experiment, health, plan, render, selfcheck, serve};
 use crate::config::{Limits, RenderConfig, ServeConfig};
 
 /// Renders water caustics, from the command line or as an HTTP service.
@@ -35,6 +35,8 @@ pub enum Command {
     Animate(animate::AnimateArgs),
     /// Draws error against time: renders a scene with each setting of its dials, compared with the float64 truth.
     Accuracy(accuracy::AccuracyArgs),
+    /// Does a published experiment again.
+    Experiment(experiment::ExperimentArgs),
     /// Measures what predictions of time and error rest on, on this machine.
     Calibrate(calibrate::CalibrateArgs),
     /// Says which passes a scene needs, why, and how much memory they hold; renders nothing.
@@ -73,6 +75,7 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Render(args) => render::run(&args, &render, &limits),
         Command::Animate(args) => animate::run(&args, &render, &limits),
         Command::Accuracy(args) => accuracy::run(&args, &render, &limits),
+        Command::Experiment(args) => experiment::run(&args, &render),
         Command::Calibrate(args) => calibrate::run(&args, &render),
         Command::Plan(args) => plan::run(&args, &render, &limits),
         Command::Serve(args) => serve::run(render, limits, args),

@@ -1,5 +1,5 @@
-//! The command line: `args` says what may be typed, one file per command does it (`render`, `animate`, `accuracy`, `calibrate`,
-//! `plan`, `serve`, `selfcheck`, `health`), `error` knows the exit codes.
+//! The command line: `args` says what may be typed, one file per command does it (`render`, `animate`, `accuracy`, `experiment`,
+//! `calibrate`, `plan`, `serve`, `selfcheck`, `health`), `error` knows the exit codes.
 //!
 //! Around them: `scene_flags` makes a flag of every field of `quality` and `output`, `scene_file` reads a scene with its
 //! meshes, `frames` reads frame ranges and file name patterns, `picture` renders and encodes, `files` writes whole files or
@@ -10,6 +10,7 @@ pub mod animate;
 pub mod args;
 pub mod calibrate;
 pub mod error;
+pub mod experiment;
 pub mod files;
 pub mod frames;
 pub mod health;

@@ -4,7 +4,7 @@
 
 use super::{GpuContext, GpuError, readback};
 
-/// Most passes that one frame times; later ones go untimed.
+/// Most passes that one frame times; what comes later is not timed, and then has no time at all.
 const MAX_SPANS: u32 = 1024;
 
 /// Timestamps around the passes of one frame.
@@ -12,6 +12,8 @@ const MAX_SPANS: u32 = 1024;
 pub struct Timing {
     queries: Option<wgpu::QuerySet>,
     labels: Vec<&'static str>,
+    /// Labels with passes that found no place.
+    untimed: Vec<&'static str>,
     by_host: bool,
     /// Under which label everything goes for now.
     group: Option<&'static str>,
@@ -32,6 +34,7 @@ impl Timing {
         Self {
             queries,
             labels: Vec::new(),
+            untimed: Vec::new(),
             by_host,
             group: None,
             host_ms: Vec::new(),
@@ -41,6 +44,7 @@ impl Timing {
     /// Forgets the last frame.
     pub fn begin_frame(&mut self) {
         self.labels.clear();
+        self.untimed.clear();
         self.host_ms.clear();
         self.group = None;
     }
@@ -66,10 +70,13 @@ impl Timing {
     /// Starts timing a pass: the query set with the indices of its begin and end, if it can be timed.
     pub fn span(&mut self, label: &'static str) -> Option<(&wgpu::QuerySet, u32, u32)> {
         let queries = self.queries.as_ref()?;
-        let index = u32::try_from(self.labels.len())
-            .ok()
-            .filter(|&i| i < MAX_SPANS)?;
-        self.labels.push(self.group.unwrap_or(label));
+        let label = self.group.unwrap_or(label);
+        let index = u32::try_from(self.labels.len()).unwrap_or(u32::MAX);
+        if index >= MAX_SPANS {
+            self.untimed.push(label);
+            return None;
+        }
+        self.labels.push(label);
         Some((queries, 2 * index, 2 * index + 1))
     }
 
@@ -118,7 +125,7 @@ impl Timing {
         }
         Ok(sums
             .into_iter()
-            .filter(|s| s.2)
+            .filter(|(label, _, trusted)| *trusted && !self.untimed.contains(label))
             .map(|(label, ms, _)| (label, ms))
             .collect())
     }

@@ -71,17 +71,20 @@ impl Reader {
                 "warm_texels" => {
                     let texels = integer::<LevelMapTexels>(text);
                     let texels = self.note(name, text, texels);
-                    self.texels = self.once(name, self.texels, texels);
+                    self.once(name, self.texels.is_some());
+                    self.texels = texels;
                 }
                 "warm_layers" => {
                     let layers = integer::<Layers>(text);
                     let layers = self.note(name, text, layers);
-                    self.layers = self.once(name, self.layers, layers);
+                    self.once(name, self.layers.is_some());
+                    self.layers = layers;
                 }
                 "warm_ior" => {
                     let ior = number(text).filter(|&ior| IOR.contains(ior));
                     let ior = self.note(name, text, ior.ok_or_else(|| IOR.to_string()));
-                    self.ior = self.once(name, self.ior, ior);
+                    self.once(name, self.ior.is_some());
+                    self.ior = ior;
                 }
                 _ => self.refuse(format!("there is no parameter `{name}`"), NAMES.join(", ")),
             }
@@ -120,15 +123,14 @@ impl Reader {
             .ok()
     }
 
-    /// The value of a parameter that may be there once.
-    fn once<T>(&mut self, name: &str, before: Option<T>, now: Option<T>) -> Option<T> {
-        if before.is_some() {
+    /// Refuses a parameter that was there already.
+    fn once(&mut self, name: &str, was_there: bool) {
+        if was_there {
             self.refuse(
                 format!("the parameter `{name}` is there twice"),
                 "once".to_owned(),
             );
         }
-        now
     }
 
     fn refuse(&mut self, detail: String, accepted: String) {

@@ -25,6 +25,8 @@ pub(super) struct Job {
     pub(super) cancel: CancellationToken,
     /// When the request arrived.
     pub(super) arrival: Instant,
+    /// When the job was handed in, its meshes looked up.
+    pub(super) handed_in: Instant,
     /// The place in the queue and the right to the thread, given back when the work has ended.
     pub(super) _permits: [OwnedSemaphorePermit; 2],
 }

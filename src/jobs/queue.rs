@@ -1,6 +1,5 @@
 //! Admission, deadline and cancellation: the callers' side of the GPU thread.
 
-use std::collections::BTreeSet;
 use std::io;
 use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,7 +14,7 @@ use super::backend::RenderBackend;
 use super::error::JobError;
 use super::job::{Job, JobContext, Typed};
 use super::status::{GpuState, GpuStatus};
-use super::worker::Worker;
+use super::worker::{Forgotten, Worker};
 use crate::frame::Frame;
 use crate::gpu::GpuError;
 use crate::level_map::{WarmUp, WarmedMap};
@@ -52,7 +51,7 @@ struct Shared {
     sender: Mutex<Option<SyncSender<Job>>>,
     join: Mutex<Option<JoinHandle<()>>>,
     status: watch::Receiver<GpuStatus>,
-    forgotten: Arc<Mutex<BTreeSet<String>>>,
+    forgotten: Forgotten,
     closing: CancellationToken,
 }
 
@@ -68,7 +67,7 @@ impl GpuQueue {
         // One job at most is on its way, since a sender holds the thread's only permit.
         let (sender, jobs) = std::sync::mpsc::sync_channel(1);
         let (publish, status) = watch::channel(GpuStatus::default());
-        let forgotten = Arc::new(Mutex::new(BTreeSet::new()));
+        let forgotten = Forgotten::default();
         let worker = Worker::new(Box::new(factory), jobs, publish, Arc::clone(&forgotten));
         let join = std::thread::Builder::new()
             .name(THREAD_NAME.to_owned())
@@ -138,9 +137,10 @@ impl GpuQueue {
         .await
     }
 
-    /// Frees what is cached for a mesh: before the next job, or within about a second. Never waits and never fails.
+    /// Frees what is cached for a mesh: before the next job, or within about a second; and what jobs that were handed in before
+    /// still build for it, after them. Never waits and never fails.
     pub fn forget_mesh(&self, id: &str) {
-        lock(&self.shared.forgotten).insert(id.to_owned());
+        lock(&self.shared.forgotten).insert(id.to_owned(), Instant::now());
     }
 
     /// What is known about the device now; never waits for a job.
@@ -184,6 +184,7 @@ impl GpuQueue {
             + 'static,
     {
         let shared = &self.shared;
+        let handed_in = Instant::now();
         if let GpuState::Failed(why) = &shared.status.borrow().state {
             return Err(JobError::Unavailable(why.clone()));
         }
@@ -209,6 +210,7 @@ impl GpuQueue {
             work: Box::new(Typed::new(call, reply)),
             cancel,
             arrival,
+            handed_in,
             _permits: [place, thread],
         };
         match lock(&shared.sender).as_ref() {

@@ -1,6 +1,6 @@
 //! The GPU thread: builds the backend, runs jobs, and recovers from loss and panic.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex};
@@ -26,6 +26,9 @@ const REOPEN_PERIOD: Duration = Duration::from_secs(5);
 /// Weight of the newest job in the typical job time.
 const JOB_TIME_WEIGHT: f64 = 0.25;
 
+/// Ids of deleted meshes, with when that was.
+pub(super) type Forgotten = Arc<Mutex<BTreeMap<String, Instant>>>;
+
 type Factory = Box<dyn FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send>;
 
 /// How one run of a job ended, if not with an answer.
@@ -41,7 +44,7 @@ pub(super) struct Worker {
     factory: Factory,
     jobs: Receiver<Job>,
     publish: watch::Sender<GpuStatus>,
-    forgotten: Arc<Mutex<BTreeSet<String>>>,
+    forgotten: Forgotten,
     last_try: Instant,
     /// What the level-map caches of devices that are gone have counted.
     gone: CacheStats,
@@ -52,7 +55,7 @@ impl Worker {
         factory: Factory,
         jobs: Receiver<Job>,
         publish: watch::Sender<GpuStatus>,
-        forgotten: Arc<Mutex<BTreeSet<String>>>,
+        forgotten: Forgotten,
     ) -> Self {
         Self {
             factory,
@@ -100,7 +103,7 @@ impl Worker {
                     status.state = GpuState::Ready;
                     status.adapter = Some(adapter);
                     status.self_check = Some(check);
-                    status.level_maps = self.since_the_start(cache);
+                    status.level_maps = self.since_the_start(&cache);
                 });
                 Some(backend)
             }
@@ -135,7 +138,11 @@ impl Worker {
             Some(present) => {
                 let polled = catch_unwind(AssertUnwindSafe(|| present.idle()));
                 match polled {
-                    Ok(Ok(())) => self.after_work(present),
+                    Ok(Ok(())) => {
+                        self.after_work(present);
+                        // Whoever held a deleted mesh would have been served by now.
+                        lock(&self.forgotten).retain(|_, deleted| deleted.elapsed() < IDLE_PERIOD);
+                    }
                     Ok(Err(error)) if is_loss(&error) => self.reopen(backend, &error.to_string()),
                     Ok(Err(error)) => tracing::warn!(%error, "the idle device reported an error"),
                     Err(panic) => self.reopen(backend, &panic_message(&*panic)),
@@ -167,7 +174,10 @@ impl Worker {
                 cancel: &job.cancel,
                 queued,
             };
-            match attempt(&mut job.work, &mut **present, &context, &self.forgotten) {
+            let attempted = attempt(&mut job.work, &mut **present, &context, &self.forgotten);
+            // Jobs run in the order they were handed in: those that may hold a mesh deleted before this one have ended.
+            lock(&self.forgotten).retain(|_, deleted| *deleted >= job.handed_in);
+            match attempted {
                 Ok(()) => {
                     self.record_job_time(started.elapsed());
                     return self.after_work(present);
@@ -208,12 +218,12 @@ impl Worker {
     }
 
     /// A cache of the present device, with the counts of those that are gone.
-    fn since_the_start(&self, cache: CacheStats) -> CacheStats {
+    fn since_the_start(&self, cache: &CacheStats) -> CacheStats {
         CacheStats {
             hits: self.gone.hits + cache.hits,
             misses: self.gone.misses + cache.misses,
             evictions: self.gone.evictions + cache.evictions,
-            ..cache
+            ..cache.clone()
         }
     }
 
@@ -226,7 +236,7 @@ impl Worker {
         }));
         match cache {
             Ok(cache) => {
-                let cache = self.since_the_start(cache);
+                let cache = self.since_the_start(&cache);
                 self.publish.send_modify(|status| status.level_maps = cache);
             }
             Err(panic) => {
@@ -246,7 +256,7 @@ fn attempt(
     work: &mut Box<dyn super::job::Work>,
     backend: &mut dyn RenderBackend,
     context: &JobContext<'_>,
-    forgotten: &Mutex<BTreeSet<String>>,
+    forgotten: &Mutex<BTreeMap<String, Instant>>,
 ) -> Result<(), Failure> {
     match catch_unwind(AssertUnwindSafe(|| {
         forget(backend, forgotten);
@@ -258,9 +268,10 @@ fn attempt(
     }
 }
 
-fn forget(backend: &mut dyn RenderBackend, forgotten: &Mutex<BTreeSet<String>>) {
-    for id in std::mem::take(&mut *lock(forgotten)) {
-        backend.forget_mesh(&id);
+/// Frees what is cached for deleted meshes, and again while jobs may run that were handed in with such a mesh before.
+fn forget(backend: &mut dyn RenderBackend, forgotten: &Mutex<BTreeMap<String, Instant>>) {
+    for id in lock(forgotten).keys() {
+        backend.forget_mesh(id);
     }
 }
 

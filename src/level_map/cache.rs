@@ -60,9 +60,10 @@ impl LevelMapCache {
     /// # Errors
     /// When they do not fit the budget together; nothing is changed then.
     pub fn reserve(&mut self, keys: &[&LevelMapKey]) -> Result<Vec<LevelMapKey>, ArenaError> {
-        let distinct: BTreeSet<&LevelMapKey> = keys.iter().copied().collect();
+        let mut seen = BTreeSet::new();
+        let keys: Vec<&LevelMapKey> = keys.iter().copied().filter(|k| seen.insert(*k)).collect();
         let error = ArenaError {
-            needed_bytes: distinct.iter().map(|key| key.bytes()).sum(),
+            needed_bytes: keys.iter().map(|key| key.bytes()).sum(),
             budget_bytes: self.totals.budget_bytes,
         };
         if error.needed_bytes > error.budget_bytes {
@@ -70,10 +71,9 @@ impl LevelMapCache {
         }
         self.clock += 1;
         let mut missing: Vec<LevelMapKey> = Vec::new();
-        for &key in keys {
+        for &key in &keys {
             match self.entries.get_mut(key) {
                 Some(entry) if entry.built => entry.last_used = self.clock,
-                _ if missing.contains(key) => {}
                 _ => {
                     self.remove(key);
                     missing.push(key.clone());
@@ -84,12 +84,12 @@ impl LevelMapCache {
             // All fit, but not around the pieces that are there already: those are built again, side by side with the rest.
             self.totals.evictions += self.entries.values().filter(|e| e.built).count() as u64;
             self.clear();
-            missing = distinct.iter().map(|key| (*key).clone()).collect();
+            missing = keys.iter().map(|key| (*key).clone()).collect();
             if !self.place_all(&missing) {
                 return Err(error);
             }
         }
-        self.totals.hits += (distinct.len() - missing.len()) as u64;
+        self.totals.hits += (keys.len() - missing.len()) as u64;
         Ok(missing)
     }
 

@@ -43,6 +43,8 @@ gpu_struct! {
         foot_m: [f32; 2],
         bend_per_m2: f32,
         kind: u32,
+        objects_min_m: [f32; 2],
+        objects_max_m: [f32; 2],
     }
 }
 

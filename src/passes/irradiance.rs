@@ -42,7 +42,7 @@ fn object_maps(facts: &SceneFacts) -> Option<String> {
     let most = most.max().filter(|_| all > 0)?;
     let of_layers = match facts.quality.layers {
         1 => String::new(),
-        layers if facts.map_receiver.is_none() => format!(", {layers} layers each"),
+        layers if facts.map_receiver.is_none() => format!(", {layers} for each object"),
         layers => format!(", layer {} of {layers}", facts.map_layer),
     };
     Some(format!(

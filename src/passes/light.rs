@@ -113,6 +113,9 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
         Source::Point { position_m } => (position_m, 1),
         Source::Submerged { position_m } => (position_m, 2),
     };
+    let (objects_min_m, objects_max_m) = sun.objects_window.map_or(([1.0; 2], [-1.0; 2]), |rect| {
+        (vec2(rect.min), vec2(rect.max))
+    });
     let light = Light {
         source: vec4(source, 0.0),
         extinction_per_m: vec4(facts.extinction_per_m, 0.0),
@@ -133,6 +136,8 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
         foot_m: vec2(sun.grid.foot_m),
         bend_per_m2: sun.grid.bend_per_m2 as f32,
         kind,
+        objects_min_m,
+        objects_max_m,
     };
     bytemuck::bytes_of(&light).to_vec()
 }
@@ -327,7 +332,7 @@ pub fn receivers(
             axis: vec4(level_box.axis, 0.0),
             s_per_m: level_box.s_per_m as f32,
             planes: if facts.quality.has_planes() {
-                facts.quality.planes
+                facts.planes_of(object)
             } else {
                 0
             },

@@ -26,7 +26,7 @@ pub(super) fn planes_uniform(facts: &SceneFacts, object: usize, plane: u32) -> V
     let uniform = Planes {
         receiver: narrow(1 + object as u64 * u64::from(facts.quality.layers)),
         object: narrow(object as u64),
-        planes: facts.quality.planes,
+        planes: facts.planes_of(object),
         list: narrow(object as u64 * slot::plane_list_words(facts)),
         plane,
         scratch: MapLayout::of(facts).scratch(),

@@ -48,7 +48,7 @@ pub const PASS: PassDesc = PassDesc {
             let Some(level_box) = &facts.suns[index].boxes[object] else {
                 continue;
             };
-            let planes = 0..facts.quality.planes;
+            let planes = 0..facts.planes_of(object);
             steps.extend(
                 planes
                     .clone()
@@ -80,7 +80,7 @@ fn slice_step(
     plane: u32,
 ) -> Step {
     let [s_min, s_max] = level_box.s_range;
-    let planes = f64::from(facts.quality.planes);
+    let planes = f64::from(facts.planes_of(object));
     let border = |index: f64| plane_depth(s_min, s_max, planes, index) as f32;
     let mut view = view_of(level_box, 0, 0);
     view.s_min = border(f64::from(plane) - 0.5);

@@ -247,6 +247,12 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     } else if facts.camera.is_none() && facts.map_sky_w_m2.iter().all(|&e| e == 0.0) {
         add("sky", "output.include_sky is false");
     }
+    if facts.asked_layers > facts.quality.layers {
+        add(
+            "layers",
+            "the output is a map of the floor: nobody looks at the objects' maps",
+        );
+    }
     if facts.quality.level_of_detail > 0.0 && facts.camera.is_none() {
         add(
             "level_of_detail",

@@ -81,7 +81,7 @@ pub(super) fn planes(facts: &SceneFacts, counts: &[Vec<[u32; 4]>]) -> Vec<PlaneS
                 all.push(PlaneStats {
                     light: sun.light,
                     object: object as u32,
-                    specified: facts.quality.planes,
+                    specified: facts.planes_of(object),
                     used,
                     sub_boxes,
                     beams: 2 * cells * cells,

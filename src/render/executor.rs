@@ -43,6 +43,10 @@ impl Renderer {
             + self.gpu.take_readback_peak()
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
             + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes);
+        let report = self
+            .watches_allocator
+            .then(|| self.gpu.device.generate_allocator_report())
+            .flatten();
         let FrameBuffers {
             by_name,
             empty,
@@ -60,6 +64,7 @@ impl Renderer {
         }
         result.map(|mut run| {
             run.peak_bytes = peak_bytes;
+            run.allocated_bytes = report.map(|report| report.total_allocated_bytes);
             run
         })
     }
@@ -125,6 +130,7 @@ impl Renderer {
             time_ms,
             peak_bytes: 0,
             level_maps_built: u32::try_from(missing.len()).unwrap_or(u32::MAX),
+            allocated_bytes: None,
         };
         if facts.wanted != Wanted::Frame {
             return Ok(result);

@@ -101,6 +101,7 @@ pub struct Renderer {
     /// Polls since the last frame.
     idle_polls: u32,
     wide_sum_reruns: u64,
+    watches_allocator: bool,
 }
 
 impl Renderer {
@@ -144,6 +145,7 @@ impl Renderer {
             calibration: config.calibration.clone().unwrap_or_default(),
             idle_polls: 0,
             wide_sum_reruns: 0,
+            watches_allocator: false,
         })
     }
 
@@ -228,6 +230,7 @@ impl Renderer {
             memory: MemoryStats {
                 planned_peak_bytes: plan.peak_bytes,
                 peak_bytes: run.peak_bytes,
+                allocated_bytes: run.allocated_bytes,
                 budget_bytes: self.memory_budget_bytes,
                 level_maps: cache_change(&cache_before, &self.level_maps.stats()),
             },
@@ -310,6 +313,11 @@ impl Renderer {
     /// How often since the start a sun was followed again because its narrow flux sums had wrapped.
     pub fn wide_sum_reruns(&self) -> u64 {
         self.wide_sum_reruns
+    }
+
+    /// Whether frames report what the GPU's allocator has given out (`stats.memory.allocated_bytes`).
+    pub fn watch_allocator(&mut self, on: bool) {
+        self.watches_allocator = on;
     }
 
     /// Bytes held on the GPU between frames: free pooled buffers, level maps, geometry.
@@ -398,6 +406,7 @@ struct RunResult {
     peak_bytes: u64,
     /// More than planned where maps that were cached had to make way and come back.
     level_maps_built: u32,
+    allocated_bytes: Option<u64>,
 }
 
 /// Whether a pass runs once per level map that is built.

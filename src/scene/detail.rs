@@ -15,6 +15,13 @@ impl SceneFacts {
         f64::from(self.objects[object].map_texels) / f64::from(self.quality.level_map_texels)
     }
 
+    /// Reference planes of an object, 2 … `quality.planes`: as many fewer as its maps are smaller, so that a plane stays as far from
+    /// the next as texels do (Tipprasert 2006, §6.1).
+    pub fn planes_of(&self, object: usize) -> u32 {
+        let slices = f64::from(self.quality.planes.saturating_sub(1));
+        1 + (slices * self.detail_of(object)).round().max(1.0) as u32
+    }
+
     /// What a plan says about wet objects with smaller maps; empty where there are none.
     pub fn reduced_maps(&self) -> String {
         let reduced = self.wet_objects().filter(|&o| self.detail_of(o) < 1.0);

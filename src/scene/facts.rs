@@ -39,6 +39,8 @@ pub struct SunFacts {
     pub window: Rect,
     /// How the grid of rays lies in the window.
     pub grid: Grid,
+    /// The piece of water whose light can reach an object under water; `None` where there is none.
+    pub objects_window: Option<Rect>,
     /// Level map of each wet object, in the order of `SceneFacts::objects`; `None` for dry ones.
     pub boxes: Vec<Option<LevelBox>>,
 }
@@ -143,6 +145,8 @@ pub struct SceneFacts {
     pub layers: Vec<LayerName>,
     /// The receiver of an irradiance map.
     pub map_receiver: Option<Receiver>,
+    /// Layers that the scene asks for; `quality.layers` is 1 where the output has no use for more.
+    pub asked_layers: u32,
     /// Its layer, 0 the nearest along the light; of a view and on the floor 0.
     pub map_layer: u32,
     /// How much of the frame is wanted.
@@ -199,6 +203,7 @@ impl SceneFacts {
             camera: None,
             layers: vec![LayerName::Irradiance],
             map_receiver: None,
+            asked_layers: scene.quality.layers,
             map_layer: 0,
             wanted: Wanted::Frame,
             map_sky_w_m2: [0.0; 3],
@@ -290,6 +295,9 @@ impl SceneFacts {
             Output::IrradianceMap(map) => {
                 self.map_receiver = Some(map.receiver);
                 self.map_layer = map.layer;
+                if matches!(map.receiver, Receiver::Floor(_)) {
+                    self.quality.layers = 1;
+                }
                 let Some(floor) = &self.floor else { return };
                 if matches!(map.receiver, Receiver::Object(_)) {
                     return;
@@ -384,6 +392,7 @@ impl SceneFacts {
                 power,
                 grid: Grid::over(window, &source),
                 window,
+                objects_window: window::objects_window(self, &source),
                 boxes,
             });
         }

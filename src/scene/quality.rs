@@ -41,7 +41,8 @@ pub struct Quality {
     #[schema(minimum = 1, maximum = 4)]
     pub layers: u32,
     /// Texels of an object's maps per pixel of its size on the picture, 0 … 16: its level map and irradiance map then have the power
-    /// of two of texels at or above that, 16 … `level_map_texels`; what is outside the picture gets 16 and still casts its shadow.
+    /// of two of texels at or above that, 16 … `level_map_texels`, and as many fewer reference planes; what is outside the picture gets 16 and
+    /// still casts its shadow.
     /// Default 0: every object gets `level_map_texels`. Views only.
     #[schema(minimum = 0, maximum = 16)]
     pub level_of_detail: f64,

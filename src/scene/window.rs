@@ -3,10 +3,13 @@
 use glam::{DVec2, DVec3};
 
 use super::facts::{CameraFacts, SceneFacts};
+use super::source::Source;
 use crate::physics::refraction;
 
 /// Directions in which the steepest tilts are looked up.
 const RIM_DIRECTIONS: u32 = 64;
+/// Farther than anything in a scene, m.
+const EVERYWHERE_M: f64 = 1e9;
 /// Widening for tilts between the ones looked up.
 const MARGIN: f64 = 0.01;
 /// Rays per side of the picture that look for the visible floor.
@@ -149,6 +152,36 @@ fn entry(rect: Rect, drift: &Drift, shallow: f64, deep: f64) -> Rect {
         min: rect.min - (drift.high * shallow).max(drift.high * deep),
         max: rect.max - (drift.low * shallow).min(drift.low * deep),
     }
+}
+
+/// Where light must enter to reach an object.
+fn object_entry(facts: &SceneFacts, index: usize, drift: &Drift) -> Rect {
+    let height = facts.surface.max_height_m();
+    let object = &facts.objects[index];
+    let lit = Lit {
+        min: object.min,
+        max: object.max,
+    };
+    entry(lit.rect(), drift, -lit.max.y - height, -lit.min.y + height)
+}
+
+/// The rectangle of water beside which no light can reach an object, whether that is asked for or stands in the way; `None` where no
+/// object is under water. Only of a sun is it known to be less than all of the water.
+pub(super) fn objects_window(facts: &SceneFacts, source: &Source) -> Option<Rect> {
+    let Source::Sun { to_light } = *source else {
+        facts.wet_objects().next()?;
+        return Some(Rect {
+            min: DVec2::splat(-EVERYWHERE_M),
+            max: DVec2::splat(EVERYWHERE_M),
+        });
+    };
+    let drift = drift(facts, -to_light)?;
+    let all = facts
+        .wet_objects()
+        .map(|index| object_entry(facts, index, &drift))
+        .reduce(Rect::including)?;
+    // Wider by far more than f32 rounds.
+    Some(all.grown(1e-3 * all.size().max_element()))
 }
 
 /// The rectangle of water whose light can reach the receivers, or `None` when nothing gets through.

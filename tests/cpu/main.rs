@@ -13,6 +13,7 @@ mod accuracy_report;
 mod cli;
 mod cli_program;
 mod cli_scene_file;
+mod experiment;
 mod folder;
 mod image_exr;
 mod image_metadata;

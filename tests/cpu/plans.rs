@@ -306,7 +306,7 @@ fn layers_multiply_the_maps_of_objects() {
         .find(|p| p.name == "irradiance")
         .unwrap();
     assert!(
-        irradiance.reason.contains("3 layers each"),
+        irradiance.reason.contains("3 for each object"),
         "{}",
         irradiance.reason
     );
@@ -339,6 +339,9 @@ fn maps_go_by_the_size_on_the_picture() {
         let sizes: Vec<u32> = facts.objects.iter().map(|o| o.map_texels).collect();
         for (object, &texels) in sizes.iter().enumerate() {
             assert_eq!(facts.detail_of(object), f64::from(texels) / 256.0);
+            // 51 planes, 50 distances, as many fewer as the map is smaller.
+            let distances = (50.0 * f64::from(texels) / 256.0).round() as u32;
+            assert_eq!(facts.planes_of(object), 1 + distances.max(1));
         }
         sizes
     };

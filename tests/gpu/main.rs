@@ -11,6 +11,7 @@ mod accuracy_service;
 mod determinism;
 mod energy;
 mod estimate;
+mod experiment;
 mod flat;
 #[allow(
     dead_code,

@@ -279,3 +279,22 @@ fn a_view_shows_what_the_map_holds() {
     assert!(error < 0.1, "{error}");
     assert!(hit.mean(0) > 1.0);
 }
+
+#[test]
+fn a_lamp_lights_by_planes_too() {
+    let output = json!({ "kind": "irradiance_map", "receiver": 0 });
+    let map = |quality: Value| {
+        let resolved = under_waves("sphere", quality, output.clone());
+        let mut value = serde_json::to_value(&resolved.scene).unwrap();
+        value["lights"] = json!([{ "kind": "point", "position_m": [0.3, 1.5, 0.2], "intensity_w_sr": [900, 900, 900] }]);
+        Map::from(&scene_files::with_meshes(value, &resolved.meshes))
+    };
+    let hit = map(json!({}));
+    let uniform = map(planes(65, "uniform"));
+    let smart = map(planes(65, "smart"));
+    let error = relative_l1(uniform.values(), hit.values()).unwrap();
+    println!("{error:.4} from hits, {:?}", smart.stats.planes[0]);
+    assert!(error < 0.06, "{error}");
+    assert_eq!(uniform.values(), smart.values());
+    assert!(smart.stats.planes[0].used < 65);
+}

@@ -7,7 +7,7 @@ use caustica::mesh::MeshInfo;
 use serde_json::Value;
 
 use super::support::scenes::OBJ;
-use super::support::{Reply, Service, scenes};
+use super::support::{Behaviour, Reply, Service, scenes};
 
 const MTL: &str = "newmtl sand\nKd 0.7 0.65 0.5\n";
 
@@ -114,6 +114,47 @@ async fn forgetting_comes_before_the_next_job() {
     let diary = service.control.diary();
     let place = |event: &str| diary.iter().position(|entry| entry == event).unwrap();
     assert!(place(&format!("forget {}", info.id)) < place("render"));
+}
+
+#[tokio::test]
+async fn what_a_waiting_render_builds_for_a_deleted_mesh_goes_too() {
+    let service = Service::start().await;
+    let info: MeshInfo = upload(&service, OBJ).await.json();
+    let path = format!("/v1/meshes/{}", info.id);
+    let scene = scenes::small_with_mesh(&info.id);
+    let start = |scene: Value| {
+        let service = service.clone();
+        tokio::spawn(async move { service.post_json("/v1/render", scene).await })
+    };
+    service.control.script([Behaviour::Block]);
+    let running = start(scenes::small());
+    service.control.wait_for("render", 1).await;
+    // This one has its mesh already, and waits.
+    let waiting = start(scene.clone());
+    service.until_depth(2).await;
+    assert_eq!(service.bare(Method::DELETE, &path).await.status, 204);
+    service.control.open_gate();
+    assert_eq!(running.await.unwrap().status, 200);
+    assert_eq!(waiting.await.unwrap().status, 200);
+    service.until_depth(0).await;
+    let forgotten = format!("forget {}", info.id);
+    let last = |diary: &[String], event: &str| diary.iter().rposition(|e| e == event).unwrap();
+    let diary = service.control.diary();
+    assert!(
+        last(&diary, &forgotten) > last(&diary, "render"),
+        "{diary:?}"
+    );
+
+    // Stored again it is as good as new: what is built for it stays.
+    assert_eq!(upload(&service, OBJ).await.status, 201);
+    assert_eq!(service.post_json("/v1/render", &scene).await.status, 200);
+    service.assert_whole().await;
+    let diary = service.control.diary();
+    let renders: Vec<usize> = (0..diary.len()).filter(|&i| diary[i] == "render").collect();
+    assert!(
+        last(&diary, &forgotten) < renders[renders.len() - 2],
+        "{diary:?}"
+    );
 }
 
 #[tokio::test]

@@ -159,13 +159,7 @@ async fn warm(
     arrival: Instant,
 ) -> Result<Vec<WarmedMap>, ApiError> {
     state.require_trusted_device()?;
-    let id = mesh.id.clone();
-    let warmed = state.queue().warm(mesh, wanted, arrival).await;
-    // Deleted in the meantime: then what was built for it goes as well.
-    if state.meshes().get(&id).is_none() {
-        state.queue().forget_mesh(&id);
-    }
-    Ok(warmed?)
+    Ok(state.queue().warm(mesh, wanted, arrival).await?)
 }
 
 /// Tells about one mesh.
@@ -186,7 +180,7 @@ pub async fn inspect(
 
 /// Forgets a mesh, and what is cached for it.
 ///
-/// Renders that have started keep it until they end.
+/// Renders that were asked for before keep it until they end.
 #[utoipa::path(
     delete, path = "/v1/meshes/{id}", tag = "meshes",
     params(("id" = String, Path, description = "`blake3:…`, from the upload.")),

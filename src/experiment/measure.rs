@@ -1,0 +1,277 @@
+//! Renders a shape each way and measures time, memory and error.
+
+use super::scene::{Way, scene};
+use super::study::{Experiment, HitPoint, MemoryExample, MeshResult, PlanePoint, WayFigures};
+use crate::accuracy::display::display_linear;
+use crate::accuracy::luv::luv_distance;
+use crate::accuracy::metrics::{MetricError, relative_l1};
+use crate::accuracy::study::{LinearImage, SpreadMs};
+use crate::frame::Frame;
+use crate::passes::Slot;
+use crate::reference::{ReferenceError, Truth};
+use crate::scene::facts::SceneFacts;
+use crate::scene::{LayerName, ResolvedScene};
+use crate::stats::Stats;
+
+/// Passes whose time is a way's own.
+const OWN_PASSES: [&str; 3] = ["depth_profile", "planes", "volumetric"];
+/// Water cells that placement by hits is measured with.
+const HIT_CELLS: [u32; 4] = [32, 64, 128, 256];
+
+/// What is measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Names of shapes of the catalogue.
+    pub meshes: Vec<String>,
+    /// Numbers of planes, each 2 … 1024.
+    pub planes: Vec<u32>,
+    /// Timed runs of each setting, at least 1.
+    pub runs: u32,
+    /// Water cells along each side of the light's window.
+    pub water_cells: u32,
+    /// Texels along each side of the maps, a power of two.
+    pub texels: u32,
+}
+
+/// Why there is no result.
+#[derive(Debug, thiserror::Error)]
+pub enum ExperimentError {
+    /// No shape of this name.
+    #[error("`{0}` is no shape of the catalogue")]
+    Shape(String),
+    /// The scene is refused.
+    #[error("{0}")]
+    Scene(String),
+    /// A frame cannot be rendered.
+    #[error(transparent)]
+    Render(#[from] crate::render::RenderError),
+    /// The reference cannot be counted.
+    #[error("no float64 truth: {0}")]
+    Truth(#[from] ReferenceError),
+    /// Figures cannot be compared.
+    #[error(transparent)]
+    Metric(#[from] MetricError),
+    /// A plot cannot be drawn.
+    #[error(transparent)]
+    Plot(#[from] crate::accuracy::plot::PlotError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] std::io::Error),
+}
+
+/// Renders a scene.
+pub type Render<'a> = dyn FnMut(&ResolvedScene) -> Result<Frame, ExperimentError> + 'a;
+/// Finds the truth about a scene, or `None` where none is wanted.
+pub type FindTruth<'a> = dyn FnMut(&ResolvedScene) -> Result<Option<Truth>, ExperimentError> + 'a;
+
+/// Does the experiment; `progress` hears how many of how many settings are done, and which is at work.
+///
+/// # Errors
+/// [`ExperimentError`]; nothing is left out.
+pub fn measure(
+    settings: &Settings,
+    render: &mut Render<'_>,
+    find_truth: &mut FindTruth<'_>,
+    progress: &mut dyn FnMut(usize, usize, &str),
+) -> Result<Experiment, ExperimentError> {
+    let each = settings.planes.len() + HIT_CELLS.len();
+    let total = settings.meshes.len() * each;
+    let mut experiment = Experiment {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        cores: std::thread::available_parallelism().map_or(1, |n| n.get() as u32),
+        water_cells: settings.water_cells,
+        texels: settings.texels,
+        runs: settings.runs,
+        memory: memory_example()?,
+        ..Experiment::default()
+    };
+    for (index, name) in settings.meshes.iter().enumerate() {
+        let base = scene(name, settings.water_cells, settings.texels)?;
+        progress(index * each, total, &format!("{name}: the float64 truth"));
+        let truth = find_truth(&base)?;
+        let truth = truth.as_ref();
+        let mut result = MeshResult {
+            name: name.clone(),
+            triangles: base.meshes[0].triangles.len() as u64,
+            truth_error: truth.map(|t| t.relative_error),
+            ..MeshResult::default()
+        };
+        for (done, &planes) in settings.planes.iter().enumerate() {
+            progress(
+                index * each + done,
+                total,
+                &format!("{name}: {planes} planes"),
+            );
+            result
+                .planes
+                .push(plane_point(&base, planes, settings.runs, truth, render)?);
+        }
+        for (done, &water_cells) in HIT_CELLS.iter().enumerate() {
+            let done = settings.planes.len() + done;
+            progress(
+                index * each + done,
+                total,
+                &format!("{name}: hits of {water_cells} cells"),
+            );
+            let mut hit = Way::Hit.of(&base);
+            hit.scene.quality.water_cells = water_cells;
+            let [way] = timed([hit], settings.runs, render)?;
+            experiment.adapter = way.frame.stats.adapter.clone();
+            let figures = way.figures(truth)?;
+            result.hits.push(HitPoint {
+                water_cells,
+                figures,
+            });
+        }
+        experiment.meshes.push(result);
+    }
+    Ok(experiment)
+}
+
+fn plane_point(
+    base: &ResolvedScene,
+    planes: u32,
+    runs: u32,
+    truth: Option<&Truth>,
+    render: &mut Render<'_>,
+) -> Result<PlanePoint, ExperimentError> {
+    let ways = [
+        Way::Volumetric(planes),
+        Way::Uniform(planes),
+        Way::Smart(planes),
+    ];
+    let [volumetric, uniform, smart] = timed(ways.map(|way| way.of(base)), runs, render)?;
+    let white_w_m2 = std::f64::consts::PI * SceneFacts::of(base).map_err(refused)?.white_radiance;
+    let pictures = [&volumetric, &uniform, &smart].map(Measured::image);
+    let compared: Vec<bool> = (0..pictures[1].rgb.len())
+        .map(|at| pictures.iter().any(|picture| picture.rgb[at] != [0.0; 3]))
+        .collect();
+    let shown = |picture: &LinearImage| display_linear(picture, white_w_m2);
+    let [v, u, s] = [
+        shown(&pictures[0])?,
+        shown(&pictures[1])?,
+        shown(&pictures[2])?,
+    ];
+    let apart = pictures[0]
+        .rgb
+        .iter()
+        .zip(&pictures[1].rgb)
+        .filter(|(a, b)| a != b);
+    let planes_of_smart = smart
+        .frame
+        .stats
+        .planes
+        .first()
+        .cloned()
+        .unwrap_or_default();
+    Ok(PlanePoint {
+        planes,
+        used: planes_of_smart.used,
+        sub_boxes: planes_of_smart.sub_boxes,
+        luv_smart: luv_distance(&s, &u, &compared)?,
+        luv_volumetric: luv_distance(&v, &u, &compared)?,
+        texels_apart: apart.count() as u32,
+        texels: compared.iter().filter(|&&c| c).count() as u32,
+        volumetric: volumetric.figures(truth)?,
+        uniform: uniform.figures(truth)?,
+        smart: smart.figures(truth)?,
+    })
+}
+
+fn refused(error: crate::scene::SceneError) -> ExperimentError {
+    ExperimentError::Scene(error.to_string())
+}
+
+/// A way's picture and the costs of its runs.
+struct Measured {
+    frame: Frame,
+    runs: Vec<Stats>,
+}
+
+/// Renders each scene once to warm up, then all in turns.
+fn timed<const N: usize>(
+    scenes: [ResolvedScene; N],
+    runs: u32,
+    render: &mut Render<'_>,
+) -> Result<[Measured; N], ExperimentError> {
+    let mut all = Vec::with_capacity(N);
+    for scene in &scenes {
+        let frame = render(scene)?;
+        all.push(Measured {
+            frame,
+            runs: Vec::new(),
+        });
+    }
+    for _ in 0..runs.max(1) {
+        for (scene, measured) in scenes.iter().zip(&mut all) {
+            measured.runs.push(render(scene)?.stats);
+        }
+    }
+    all.try_into()
+        .map_err(|_| ExperimentError::Scene("no scenes".to_owned()))
+}
+
+impl Measured {
+    fn image(&self) -> LinearImage {
+        let layer = &self.frame.layers[&LayerName::Irradiance];
+        let pixels = layer.data.chunks_exact(layer.channels);
+        LinearImage {
+            width: self.frame.width,
+            height: self.frame.height,
+            rgb: pixels
+                .map(|p| std::array::from_fn(|c| f64::from(p[c])))
+                .collect(),
+        }
+    }
+
+    fn figures(&self, truth: Option<&Truth>) -> Result<WayFigures, ExperimentError> {
+        let own = |stats: &Stats| -> Option<f64> {
+            let passes = stats
+                .passes
+                .iter()
+                .filter(|p| OWN_PASSES.contains(&p.name.as_str()));
+            passes.map(|pass| pass.gpu_ms).sum()
+        };
+        let own_ms: Option<Vec<f64>> = self.runs.iter().map(own).collect();
+        let last = self
+            .runs
+            .last()
+            .map(|stats| stats.memory.clone())
+            .unwrap_or_default();
+        Ok(WayFigures {
+            ms: SpreadMs::of(self.runs.iter().map(|stats| stats.time_ms.gpu).collect())
+                .unwrap_or_default(),
+            own_ms: own_ms.and_then(SpreadMs::of).map(|spread| spread.median),
+            planned_bytes: last.planned_peak_bytes,
+            peak_bytes: last.peak_bytes,
+            allocated_bytes: last.allocated_bytes,
+            error: truth.map(|truth| self.error(truth)).transpose()?,
+        })
+    }
+
+    /// Relative L1 error over the texels that the truth has a surface in.
+    fn error(&self, truth: &Truth) -> Result<f64, ExperimentError> {
+        let image = self.image();
+        let compared = |values: &[[f64; 3]]| -> Vec<[f64; 3]> {
+            let marked = values.iter().zip(&truth.compared);
+            marked.filter(|(_, c)| **c).map(|(v, _)| *v).collect()
+        };
+        let (image, truth) = (compared(&image.rgb), compared(&truth.irradiance));
+        Ok(relative_l1(image.as_flattened(), truth.as_flattened())?)
+    }
+}
+
+/// The thesis's example of memory in this program's formats.
+fn memory_example() -> Result<MemoryExample, ExperimentError> {
+    const OBJECTS: u64 = 100;
+    const PLANES: u32 = 100;
+    let scene = Way::Volumetric(PLANES).of(&scene("box", 2, 512)?);
+    let facts = SceneFacts::of(&scene).map_err(refused)?;
+    let level_map = crate::plan::level_maps(&facts)
+        .first()
+        .map_or(0, |key| key.bytes());
+    Ok(MemoryExample {
+        level_maps_bytes: OBJECTS * level_map,
+        slices_bytes: OBJECTS * Slot::Slices.bytes(&facts),
+    })
+}
