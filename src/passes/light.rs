@@ -25,6 +25,8 @@ const FINE_COUNTS: f64 = 65_536.0;
 /// Fewest counts of an evenly lit texel of the finest map; less, because a small object in a wide pool is common and must not
 /// make everything dear.
 const FINEST_MAP_COUNTS: f64 = 4096.0;
+/// Fewest counts of the mean beam of a point light in narrow sums.
+const MEAN_BEAM_COUNTS: f64 = 16_384.0;
 /// Fewest counts of the smallest part of the largest beam that straddles receivers: less would be lost to rounding.
 const PART_COUNTS: f64 = 64.0;
 /// Where a narrow sum wraps.
@@ -277,6 +279,14 @@ pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     } else {
         1.0
     };
+    let sun = &facts.suns[index];
+    let beams = 2.0 * f64::from(facts.quality.water_cells).powi(2);
+    // To a near light most beams are far smaller than the largest.
+    if matches!(sun.source, Source::Point { .. })
+        && scale * entering_sr(sun) / beams < MEAN_BEAM_COUNTS
+    {
+        return true;
+    }
     scale * largest_beam(facts, &facts.suns[index]) < FINE_COUNTS.max(PART_COUNTS * parts)
         || scale * coarsest < FINE_COUNTS
         || scale * finest < FINEST_MAP_COUNTS

@@ -262,6 +262,11 @@ impl SceneFacts {
         }
     }
 
+    fn has_light_through_water(&self) -> bool {
+        let mut suns = self.suns.iter();
+        suns.any(|sun| !matches!(sun.source, Source::Submerged { .. }))
+    }
+
     fn want_output(&mut self, output: &Output, camera: Option<&Camera>) {
         match output {
             Output::View(view) => {
@@ -464,7 +469,7 @@ impl SceneFacts {
                 );
                 warning.pointer = Some(format!("/objects/{index}"));
                 self.warnings.push(warning);
-            } else if !object.wet && self.has_receiver() && !self.suns.is_empty() {
+            } else if !object.wet && self.has_receiver() && self.has_light_through_water() {
                 let mut warning = Warning::new(
                     "dry_object_casts_no_shadow",
                     "the object is above the water; its shadow on the water is not simulated",

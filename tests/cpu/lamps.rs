@@ -335,7 +335,7 @@ pub(crate) fn closed_form_map(lamp: &LampOverFlatWater, foot: [f64; 2], side: us
 fn the_reference_agrees_with_the_closed_form() {
     for (y, ior, absorption) in [
         (1.0, 1.333, 0.0),
-        (0.3, 1.333, 0.2),
+        (0.5, 1.333, 0.2),
         (4.0, 1.5, 0.1),
         (-0.5, 1.333, 0.3),
     ] {
