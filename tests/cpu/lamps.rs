@@ -333,11 +333,12 @@ pub(crate) fn closed_form_map(lamp: &LampOverFlatWater, foot: [f64; 2], side: us
 
 #[test]
 fn the_reference_agrees_with_the_closed_form() {
-    for (y, ior, absorption) in [
-        (1.0, 1.333, 0.0),
-        (0.5, 1.333, 0.2),
-        (4.0, 1.5, 0.1),
-        (-0.5, 1.333, 0.3),
+    for (y, ior, absorption, bound) in [
+        (1.0, 1.333, 0.0, 1e-3),
+        // The lattice is even and a near lamp's light is not: so many rays reach 1.3e-3, and its own estimate says so.
+        (0.3, 1.333, 0.2, 2e-3),
+        (4.0, 1.5, 0.1, 1e-3),
+        (-0.5, 1.333, 0.3, 1e-3),
     ] {
         let water = json!({ "ior": ior, "absorption_per_m": [absorption, absorption, absorption] });
         let resolved = scene_files::scene(pool([0.2, y, -0.1], water, 32));
@@ -365,7 +366,11 @@ fn the_reference_agrees_with_the_closed_form() {
                 "{y} m, channel {c}: L1 {error:.1e}, worst texel {worst:.1e}, estimate {:.1e}",
                 map.relative_error
             );
-            assert!(error < 1e-3, "{y} m: {error:e}");
+            assert!(error < bound, "{y} m: {error:e}");
+            assert!(
+                error < 1.5 * map.relative_error.max(5e-4),
+                "{y} m: {error:e}"
+            );
         }
         crate::reference::assert_energy_closes(&map);
     }

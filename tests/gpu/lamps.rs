@@ -80,7 +80,7 @@ fn against_closed_form(position_m: [f64; 3], ior: f64, absorption: f64, cells: u
         "{position_m:?}: {:e}",
         map.closure()
     );
-    (l1, worst)
+    (l1, worst, largest_to_mean(&found, &expected))
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn flat_water_gives_the_closed_form() {
         (100.0, 1.333, 0.0),
     ] {
         for (x, z) in [(0.0, 0.0), (0.2, -0.1), (1.7, 0.4)] {
-            let (l1, worst) = against_closed_form([x, y, z], ior, absorption, 256);
+            let (l1, worst, _) = against_closed_form([x, y, z], ior, absorption, 256);
             assert!(l1 <= 3e-4, "{y} m: {l1:e}");
             assert!(worst <= 2e-3, "{y} m: {worst:e}");
         }
@@ -121,9 +121,10 @@ fn a_lamp_under_water_gives_the_closed_form() {
         [0.0, 0.0, 0.0],
         [0.4, -1.7, 0.4],
     ] {
-        // Far aside of a light near the floor texels are too dim to be compared one by one.
-        let (l1, _) = against_closed_form(position, 1.333, 0.2, 512);
+        // Far aside of a light near the floor texels are too dim to be compared with themselves.
+        let (l1, _, to_mean) = against_closed_form(position, 1.333, 0.2, 512);
         assert!(l1 <= 1e-3, "{position:?}: {l1:e}");
+        assert!(to_mean <= 3e-2, "{position:?}: {to_mean:e} of the mean");
     }
 }
 
