@@ -230,7 +230,10 @@ impl Measured {
                 .passes
                 .iter()
                 .filter(|p| OWN_PASSES.contains(&p.name.as_str()));
-            passes.map(|pass| pass.gpu_ms).sum()
+            // Hits have none of them.
+            let times: Vec<Option<f64>> = passes.map(|pass| pass.gpu_ms).collect();
+            times.first()?;
+            times.into_iter().sum()
         };
         let own_ms: Option<Vec<f64>> = self.runs.iter().map(own).collect();
         let last = self
