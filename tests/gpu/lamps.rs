@@ -54,7 +54,12 @@ fn closed_form_map(lamp: &LampOverFlatWater, foot: [f64; 2], side: usize) -> Vec
 }
 
 /// Relative L1 error and that of the worst texel against the closed form.
-fn against_closed_form(position_m: [f64; 3], ior: f64, absorption: f64, cells: u32) -> (f64, f64) {
+fn against_closed_form(
+    position_m: [f64; 3],
+    ior: f64,
+    absorption: f64,
+    cells: u32,
+) -> (f64, f64, f64) {
     let side = 64;
     let water = json!({ "ior": ior, "absorption_per_m": [absorption, absorption, absorption] });
     let map = Map::of(pool(json!([lamp(position_m)]), water, cells, side));
