@@ -61,10 +61,15 @@ fn is_edge_texel(map_offset: u32, size: u32, texel: vec2i) -> bool {
     return (level_maps[word + 1u] & EDGE_MARK) != 0u;
 }
 
+// Whether the last march ended below the front of its texel by more than a texel: the ray came in through a side or from behind, as
+// it does where a solid gets thin towards its silhouette and a tilted ray strikes its far side.
+var<private> came_from_aside: bool = false;
+
 // Where a ray (map space, t in m) enters what the level map holds, between t_min and t_max; t < 0: nowhere, or AT_EDGE where it
 // comes to an edge texel first.
 // Hierarchical walk: cells whose depth interval the ray's own interval misses are passed whole.
 fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> f32 {
+    came_from_aside = false;
     let side = f32(r.map_width);
     // Clip to the box of the map.
     var t_in = t_min;
@@ -105,6 +110,7 @@ fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_m
         let depths = level_map_depths(r.level_map_offset, r.map_width, level, cell);
         if max(s_0, s_1) >= depths.x && min(s_0, s_1) <= depths.y {
             if level == 0u {
+                came_from_aside = s_0 > depths.x + r.s_per_m * inverseSqrt(r.density_per_flux);
                 if s_0 >= depths.x || abs(direction.z) < 1e-20 { return t; }
                 return clamp(t + (depths.x - s_0) / direction.z, t, t_leave);
             }

@@ -1,7 +1,8 @@
 // The first receiver a light ray strikes under water: the floor exactly, meshes by their level maps, and by their triangles where
 // the level map has an edge. Silhouettes are then as sharp as the mesh, whatever the level map's texels.
 //
-// Further layers are only met over an edge: what lies under a smooth front is reached by rays that come in beside it.
+// With further layers the mesh itself is also asked where a ray does not come in through the front: there the march would stop at the
+// texel's side and call it the first surface.
 
 const FAR_M: f32 = 1e6;
 // Texels in depth that a surface is held for farther away when it stands across what was struck; when it faces the other way, twice;
@@ -44,7 +45,7 @@ fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> H
     let d = direction_to_map(r, direction);
     if PLANES { return trace_planes(r, number, o, d, t_max); }
     let t = march_level_map(r, o, d, 0.0, t_max);
-    if t == AT_EDGE {
+    if t == AT_EDGE || (light.layers > 1u && t >= 0.0 && came_from_aside) {
         let met = trace_instance(index, origin, direction, 0.0, t_max);
         if met.t >= t_max { return nothing; }
         let q = o + d * met.t;
