@@ -47,6 +47,7 @@
 //! | [`reference`] | float64 truth by plain rays: another algorithm, not a port |
 //! | [`accuracy`] | error of images, dials and their sweeps, plots and reports |
 //! | [`tuning`] | from a wanted error or time to dials |
+//! | [`hard_cases`] | scenes that break caustics renderers, and how that would show |
 //! | [`image`] | PNG, EXR, tone curve |
 //! | [`jobs`] | bounded queue and the one GPU thread |
 //! | [`http`] | routes; the only place that knows status codes is its error table |
@@ -60,6 +61,7 @@ pub mod cli;
 pub mod config;
 pub mod frame;
 pub mod gpu;
+pub mod hard_cases;
 pub mod http;
 pub mod image;
 pub mod jobs;

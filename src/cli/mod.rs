@@ -12,6 +12,7 @@ pub mod calibrate;
 pub mod error;
 pub mod files;
 pub mod frames;
+pub mod hard_cases;
 pub mod health;
 pub mod picture;
 pub mod plan;

@@ -20,6 +20,7 @@ mod flat;
 mod folder;
 mod footprint;
 mod formulas;
+mod hard_cases;
 mod harness;
 mod memory;
 mod planted;
