@@ -76,7 +76,12 @@ pub fn in_words(outcomes: &[Outcome]) -> String {
                 .figure
                 .map_or_else(String::new, |figure| format!("{figure:.1e}"));
             vec![
-                if outcome.verdict.is_expected() { "ok" } else { "FAILED" }.to_owned(),
+                if outcome.verdict.is_expected() {
+                    "ok"
+                } else {
+                    "FAILED"
+                }
+                .to_owned(),
                 outcome.case.family.name().to_owned(),
                 outcome.case.name.to_owned(),
                 format!("{figure} of {:.0e}", outcome.case.bound),
@@ -92,7 +97,10 @@ fn write(folder: &std::path::Path, outcomes: &[Outcome], on: &str) -> Result<(),
     std::fs::create_dir_all(&pictures).map_err(|e| CliError::write(&pictures, e))?;
     for outcome in outcomes {
         if let Some(bytes) = page::thumbnail(outcome) {
-            files::write_whole(&pictures.join(format!("{}.png", outcome.case.name)), &bytes?)?;
+            files::write_whole(
+                &pictures.join(format!("{}.png", outcome.case.name)),
+                &bytes?,
+            )?;
         }
     }
     let text = page::markdown(outcomes, on, "hard-cases");

@@ -71,7 +71,11 @@ impl<'a> Bench<'a> {
                 )));
             }
             let bits = |frame: &Frame| -> Vec<u32> {
-                frame.layers[name].data.iter().map(|v| v.to_bits()).collect()
+                frame.layers[name]
+                    .data
+                    .iter()
+                    .map(|v| v.to_bits())
+                    .collect()
             };
             if bits(&frame) != bits(&again) {
                 return Err(Failure::Check(format!(
@@ -126,11 +130,15 @@ impl<'a> Bench<'a> {
                     .any(|issue| issue.pointer == pointer && !issue.accepted.is_empty());
                 Ok(if found { 0.0 } else { 1.0 })
             }
-            Err(Failure::Render(RenderError::OverBudget { needed_bytes, budget_bytes, .. }))
-                if pointer.is_empty() =>
-            {
-                Ok(if needed_bytes > budget_bytes { 0.0 } else { 1.0 })
-            }
+            Err(Failure::Render(RenderError::OverBudget {
+                needed_bytes,
+                budget_bytes,
+                ..
+            })) if pointer.is_empty() => Ok(if needed_bytes > budget_bytes {
+                0.0
+            } else {
+                1.0
+            }),
             Err(other) => Err(other),
             Ok(_) => Err(Failure::Check("it is not refused".to_owned())),
         }

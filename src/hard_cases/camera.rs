@@ -31,14 +31,29 @@ const LIT: &str = "share of pixels that are negative or all black";
 const REFUSED: &str = "0 where it is refused at that field";
 
 pub(super) const CASES: &[Case] = &[
-    case("a_micrometre_under_the_surface", "a start on the wrong side", RADIANCE, 2e-3, |b| {
-        looking_down(b, -1e-6)
-    }),
-    case("a_micrometre_over_the_surface", "a start on the wrong side", RADIANCE, 2e-3, |b| {
-        looking_down(b, 1e-6)
-    }),
+    case(
+        "a_micrometre_under_the_surface",
+        "a start on the wrong side",
+        RADIANCE,
+        2e-3,
+        |b| looking_down(b, -1e-6),
+    ),
+    case(
+        "a_micrometre_over_the_surface",
+        "a start on the wrong side",
+        RADIANCE,
+        2e-3,
+        |b| looking_down(b, 1e-6),
+    ),
     case("on_the_surface", "a start on neither side", LIT, 0.0, |b| {
-        lit(b, camera([0.0, 0.0, 0.0], [0.0, -1.0, 0.0], json!({ "up": [0, 0, -1] })))
+        lit(
+            b,
+            camera(
+                [0.0, 0.0, 0.0],
+                [0.0, -1.0, 0.0],
+                json!({ "up": [0, 0, -1] }),
+            ),
+        )
     }),
     case("on_a_wave", "a start within a crest", LIT, 0.05, |b| {
         let scene = with(
@@ -47,44 +62,125 @@ pub(super) const CASES: &[Case] = &[
         );
         lit(b, scene)
     }),
-    case("along_its_own_up", "a basis without a right", REFUSED, 0.0, |b| {
-        b.refused_at(camera([0.0, 2.0, 0.0], [0.0, -1.0, 0.0], json!({ "up": [0, 1, 0] })), "/camera/up")
-    }),
-    case("a_field_of_view_of_a_tenth_of_a_degree", "pixels of almost one ray", LIT, 0.0, |b| {
-        lit(b, camera([0.0, 30.0, 10.0], [0.0, -2.0, 0.0], json!({ "vertical_fov_deg": 0.1 })))
-    }),
-    case("a_field_of_view_of_179_degrees", "pixels of grazing rays", LIT, 0.0, |b| {
-        let sky = json!({ "kind": "sky", "radiance_w_m2_sr": [1, 1, 1] });
-        let scene = with(
-            camera([0.0, 1.0, 0.0], [0.0, -1.0, -0.1], json!({ "vertical_fov_deg": 179 })),
-            &[("/lights", json!([sun(60.0, 30.0), sky]))],
-        );
-        lit(b, scene)
-    }),
-    case("under_water_at_the_critical_angle", "total reflection at its very edge", LIT, 0.0, |b| {
-        let sky = json!({ "kind": "sky", "radiance_w_m2_sr": [1, 1, 1] });
-        let scene = with(
-            camera([0.0, -1.0, 0.0], [(1.0_f64 / 1.333).asin().tan(), 0.0, 0.0], json!({ "vertical_fov_deg": 5 })),
-            &[("/lights", json!([sun(60.0, 30.0), sky]))],
-        );
-        lit(b, scene)
-    }),
-    case("one_pixel", "a picture without neighbours", RADIANCE, 2e-3, |b| {
-        middle(b, with(looking(-0.5), &[("/output/width", json!(1)), ("/output/height", json!(1))]), -0.5)
-    }),
-    case("one_column_of_8192_pixels", "bands and aspects", LIT, 0.0, |b| {
-        let scene = with(
-            camera([0.0, 3.0, 0.0], [0.0, -1.0, 0.0], json!({ "up": [0, 0, -1], "vertical_fov_deg": 20 })),
-            &[("/output/width", json!(1)), ("/output/height", json!(8192))],
-        );
-        lit(b, scene)
-    }),
-    case("8192_by_8192_pixels", "memory without end", REFUSED, 0.0, |b| {
-        b.refused_at(
-            with(looking(1.0), &[("/output/width", json!(8192)), ("/output/height", json!(8192))]),
-            "/output",
-        )
-    }),
+    case(
+        "along_its_own_up",
+        "a basis without a right",
+        REFUSED,
+        0.0,
+        |b| {
+            b.refused_at(
+                camera(
+                    [0.0, 2.0, 0.0],
+                    [0.0, -1.0, 0.0],
+                    json!({ "up": [0, 1, 0] }),
+                ),
+                "/camera/up",
+            )
+        },
+    ),
+    case(
+        "a_field_of_view_of_a_tenth_of_a_degree",
+        "pixels of almost one ray",
+        LIT,
+        0.0,
+        |b| {
+            lit(
+                b,
+                camera(
+                    [0.0, 30.0, 10.0],
+                    [0.0, -2.0, 0.0],
+                    json!({ "vertical_fov_deg": 0.1 }),
+                ),
+            )
+        },
+    ),
+    case(
+        "a_field_of_view_of_179_degrees",
+        "pixels of grazing rays",
+        LIT,
+        0.0,
+        |b| {
+            let sky = json!({ "kind": "sky", "radiance_w_m2_sr": [1, 1, 1] });
+            let scene = with(
+                camera(
+                    [0.0, 1.0, 0.0],
+                    [0.0, -1.0, -0.1],
+                    json!({ "vertical_fov_deg": 179 }),
+                ),
+                &[("/lights", json!([sun(60.0, 30.0), sky]))],
+            );
+            lit(b, scene)
+        },
+    ),
+    case(
+        "under_water_at_the_critical_angle",
+        "total reflection at its very edge",
+        LIT,
+        0.0,
+        |b| {
+            let sky = json!({ "kind": "sky", "radiance_w_m2_sr": [1, 1, 1] });
+            let scene = with(
+                camera(
+                    [0.0, -1.0, 0.0],
+                    [(1.0_f64 / 1.333).asin().tan(), 0.0, 0.0],
+                    json!({ "vertical_fov_deg": 5 }),
+                ),
+                &[("/lights", json!([sun(60.0, 30.0), sky]))],
+            );
+            lit(b, scene)
+        },
+    ),
+    case(
+        "one_pixel",
+        "a picture without neighbours",
+        RADIANCE,
+        2e-3,
+        |b| {
+            middle(
+                b,
+                with(
+                    looking(-0.5),
+                    &[("/output/width", json!(1)), ("/output/height", json!(1))],
+                ),
+                -0.5,
+            )
+        },
+    ),
+    case(
+        "one_column_of_8192_pixels",
+        "bands and aspects",
+        LIT,
+        0.0,
+        |b| {
+            let scene = with(
+                camera(
+                    [0.0, 3.0, 0.0],
+                    [0.0, -1.0, 0.0],
+                    json!({ "up": [0, 0, -1], "vertical_fov_deg": 20 }),
+                ),
+                &[("/output/width", json!(1)), ("/output/height", json!(8192))],
+            );
+            lit(b, scene)
+        },
+    ),
+    case(
+        "pictures_of_8192_by_8192_pixels",
+        "memory without end",
+        REFUSED,
+        0.0,
+        |b| {
+            b.refused_at(
+                with(
+                    looking(1.0),
+                    &[
+                        ("/output/width", json!(8192)),
+                        ("/output/height", json!(8192)),
+                    ],
+                ),
+                "/output",
+            )
+        },
+    ),
 ];
 
 fn camera(position_m: [f64; 3], target_m: [f64; 3], more: Value) -> Value {
@@ -96,14 +192,21 @@ fn camera(position_m: [f64; 3], target_m: [f64; 3], more: Value) -> Value {
         pool(),
         &[
             ("/camera", camera),
-            ("/output", json!({ "kind": "view", "width": 48, "height": 32 })),
+            (
+                "/output",
+                json!({ "kind": "view", "width": 48, "height": 32 }),
+            ),
         ],
     )
 }
 
 /// Straight down from this height.
 fn looking(y_m: f64) -> Value {
-    camera([0.0, y_m, 0.0], [0.0, -2.0, 0.0], json!({ "up": [0, 0, -1], "vertical_fov_deg": 20 }))
+    camera(
+        [0.0, y_m, 0.0],
+        [0.0, -2.0, 0.0],
+        json!({ "up": [0, 0, -1], "vertical_fov_deg": 20 }),
+    )
 }
 
 fn looking_down(bench: &mut Bench<'_>, y_m: f64) -> Result<f64, Failure> {

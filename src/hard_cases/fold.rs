@@ -28,25 +28,51 @@ const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
 const REFERENCE: &str = "relative L1 against the reference";
 
 pub(super) const CASES: &[Case] = &[
-    case("footprints_that_turn_inside_out", "signed areas taken for flux", REFERENCE, 0.02, |b| {
-        let scene = with(
-            pool(),
-            &[("/water/waves", waves()), ("/floor/depth_m", json!(6)), ("/quality/water_cells", json!(512))],
-        );
-        reference_error(b, scene)
-    }),
-    case("footprints_within_one_texel", "divisions by footprints", CLOSED_FORM, 1e-4, |b| {
-        flat_error(b, sized(1024, 2, 2))
-    }),
-    case("footprints_of_a_hundred_thousand_texels", "loops over texels by one invocation", CLOSED_FORM, 1e-4, |b| {
-        flat_error(b, sized(4, 1024, 1024))
-    }),
-    case("footprints_of_millions_of_texels", "loops over texels by one invocation", CLOSED_FORM, 1e-4, |b| {
-        flat_error(b, sized(2, 2048, 2048))
-    }),
-    case("texels_long_and_thin", "rows and columns taken alike", CLOSED_FORM, 1e-4, |b| {
-        flat_error(b, sized(16, 2048, 2))
-    }),
+    case(
+        "footprints_that_turn_inside_out",
+        "signed areas taken for flux",
+        REFERENCE,
+        0.02,
+        |b| {
+            let scene = with(
+                pool(),
+                &[
+                    ("/water/waves", waves()),
+                    ("/floor/depth_m", json!(6)),
+                    ("/quality/water_cells", json!(512)),
+                ],
+            );
+            reference_error(b, scene)
+        },
+    ),
+    case(
+        "footprints_within_one_texel",
+        "divisions by footprints",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, sized(1024, 2, 2)),
+    ),
+    case(
+        "footprints_of_a_hundred_thousand_texels",
+        "loops over texels by one invocation",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, sized(4, 1024, 1024)),
+    ),
+    case(
+        "footprints_of_millions_of_texels",
+        "loops over texels by one invocation",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, sized(2, 2048, 2048)),
+    ),
+    case(
+        "texels_long_and_thin",
+        "rows and columns taken alike",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, sized(16, 2048, 2)),
+    ),
     case(
         "every_corner_on_a_texel_corner",
         "boundaries counted twice or not at all",
@@ -77,12 +103,22 @@ pub(super) const CASES: &[Case] = &[
                     sized(256, 512, 512),
                     &[
                         ("/water/waves", json!(waves)),
-                        ("/lights/0", with(sun(90.0, 0.0), &[("/irradiance_w_m2", json!([power, power, power]))])),
+                        (
+                            "/lights/0",
+                            with(
+                                sun(90.0, 0.0),
+                                &[("/irradiance_w_m2", json!([power, power, power]))],
+                            ),
+                        ),
                     ],
                 )
             };
             let one = b.map(scene(1.0))?;
-            let large: Vec<[f64; 3]> = b.map(scene(1e9))?.iter().map(|t| t.map(|v| v * 1e-9)).collect();
+            let large: Vec<[f64; 3]> = b
+                .map(scene(1e9))?
+                .iter()
+                .map(|t| t.map(|v| v * 1e-9))
+                .collect();
             Ok(largest_to_mean(&large, &one))
         },
     ),

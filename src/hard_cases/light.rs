@@ -31,22 +31,50 @@ const DARK: &str = "share of texels that are not black";
 const GRAZING: &str = "cosines near 0, Fresnel near 1, windows of very long rays";
 
 pub(super) const CASES: &[Case] = &[
-    case("sun_in_the_zenith", "an azimuth without meaning", CLOSED_FORM, 1e-4, |b| {
-        flat_error(b, flat(90.0))
+    case(
+        "sun_in_the_zenith",
+        "an azimuth without meaning",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, flat(90.0)),
+    ),
+    case("sun_at_10_degrees", GRAZING, CLOSED_FORM, 1e-4, |b| {
+        flat_error(b, flat(10.0))
     }),
-    case("sun_at_10_degrees", GRAZING, CLOSED_FORM, 1e-4, |b| flat_error(b, flat(10.0))),
-    case("sun_at_1_degree", GRAZING, CLOSED_FORM, 1e-4, |b| flat_error(b, flat(1.0))),
-    case("sun_at_a_hundredth_of_a_degree", GRAZING, CLOSED_FORM, 2e-4, |b| {
-        flat_error(b, flat(0.01))
+    case("sun_at_1_degree", GRAZING, CLOSED_FORM, 1e-4, |b| {
+        flat_error(b, flat(1.0))
     }),
-    case("sun_on_the_horizon", "0/0 in refraction", DARK, 0.0, |b| dark(b, flat(0.0))),
-    case("sun_below_the_horizon", "light from below", DARK, 0.0, |b| dark(b, flat(-5.0))),
-    case("waves_under_a_sun_at_10_degrees", "waves that look away from the sun", REFERENCE, 0.03, |b| {
-        reference_error(b, wavy(10.0))
+    case(
+        "sun_at_a_hundredth_of_a_degree",
+        GRAZING,
+        CLOSED_FORM,
+        2e-4,
+        |b| flat_error(b, flat(0.01)),
+    ),
+    case("sun_on_the_horizon", "0/0 in refraction", DARK, 0.0, |b| {
+        dark(b, flat(0.0))
     }),
-    case("waves_under_a_sun_at_1_degree", "waves that look away from the sun", REFERENCE, 0.05, |b| {
-        reference_error(b, wavy(1.0))
-    }),
+    case(
+        "sun_below_the_horizon",
+        "light from below",
+        DARK,
+        0.0,
+        |b| dark(b, flat(-5.0)),
+    ),
+    case(
+        "waves_under_a_sun_at_10_degrees",
+        "waves that look away from the sun",
+        REFERENCE,
+        0.03,
+        |b| reference_error(b, wavy(10.0)),
+    ),
+    case(
+        "waves_under_a_sun_at_1_degree",
+        "waves that look away from the sun",
+        REFERENCE,
+        0.05,
+        |b| reference_error(b, wavy(1.0)),
+    ),
     case(
         "waves_under_a_sun_at_a_hundredth_of_a_degree",
         "waves that look away from the sun",
@@ -64,7 +92,10 @@ pub(super) const CASES: &[Case] = &[
             let scene = with(
                 pool(),
                 &[
-                    ("/water/waves", json!([{ "kind": "sine", "amplitude_m": 0.05, "wavelength_m": 1.0 }])),
+                    (
+                        "/water/waves",
+                        json!([{ "kind": "sine", "amplitude_m": 0.05, "wavelength_m": 1.0 }]),
+                    ),
                     ("/lights/0", sun(slope.atan().to_degrees(), 0.0)),
                 ],
             );
@@ -72,14 +103,28 @@ pub(super) const CASES: &[Case] = &[
         },
     ),
     case("no_irradiance", "a division by the flux", DARK, 0.0, |b| {
-        dark(b, with(wavy(60.0), &[("/lights/0/irradiance_w_m2", json!([0, 0, 0]))]))
+        dark(
+            b,
+            with(
+                wavy(60.0),
+                &[("/lights/0/irradiance_w_m2", json!([0, 0, 0]))],
+            ),
+        )
     }),
     case(
         "one_dark_channel",
         "a division by the flux of a channel",
         "worst texel against E cos θ T e^(−cd)",
         1e-4,
-        |b| flat_error(b, with(flat(50.0), &[("/lights/0/irradiance_w_m2", json!([0, 1, 0]))])),
+        |b| {
+            flat_error(
+                b,
+                with(
+                    flat(50.0),
+                    &[("/lights/0/irradiance_w_m2", json!([0, 1, 0]))],
+                ),
+            )
+        },
     ),
     case(
         "dim_and_bright_suns_together",

@@ -12,7 +12,10 @@ const THUMBNAIL: u32 = 96;
 /// The page, in Markdown; thumbnails are `FOLDER/NAME.png` where `has_picture` says so.
 pub fn markdown(outcomes: &[Outcome], adapter: &str, folder: &str) -> String {
     let mut text = String::from("# Hard cases\n\n");
-    let held = outcomes.iter().filter(|o| o.verdict == Verdict::Holds).count();
+    let held = outcomes
+        .iter()
+        .filter(|o| o.verdict == Verdict::Holds)
+        .count();
     let _ = writeln!(
         text,
         "{held} of {} cases hold, on {adapter}. Written by `caustica hard-cases`.\n\n\
@@ -21,7 +24,10 @@ pub fn markdown(outcomes: &[Outcome], adapter: &str, folder: &str) -> String {
         outcomes.len()
     );
     for family in Family::ALL {
-        let of_family: Vec<&Outcome> = outcomes.iter().filter(|o| o.case.family == family).collect();
+        let of_family: Vec<&Outcome> = outcomes
+            .iter()
+            .filter(|o| o.case.family == family)
+            .collect();
         if of_family.is_empty() {
             continue;
         }

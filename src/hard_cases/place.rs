@@ -28,18 +28,42 @@ const MOVED: &str = "largest difference from the scene at the origin, to the mea
 const SCALED: &str = "largest difference from the scene of metres, to the mean";
 
 pub(super) const CASES: &[Case] = &[
-    case("moved_by_100_km", "positions in f32 far from the origin", MOVED, 1e-4, |b| {
-        let here = b.map(scene(1.0, [0.0, 0.0], 0.0))?;
-        let there = b.map(scene(1.0, [1e5, -1e5], 0.0))?;
-        Ok(largest_to_mean(&there, &here))
-    }),
-    case("lifted_by_100_km", "heights in f32 far from the origin", MOVED, 1e-4, |b| {
-        let here = b.map(scene(1.0, [0.0, 0.0], 0.0))?;
-        let there = b.map(scene(1.0, [0.0, 0.0], 1e5))?;
-        Ok(largest_to_mean(&there, &here))
-    }),
-    case("a_thousandth_of_the_size", "tolerances in metres", SCALED, 1e-4, |b| scaled(b, 1e-3)),
-    case("a_thousand_times_the_size", "tolerances in metres", SCALED, 1e-4, |b| scaled(b, 1e3)),
+    case(
+        "moved_by_100_km",
+        "positions in f32 far from the origin",
+        MOVED,
+        1e-4,
+        |b| {
+            let here = b.map(scene(1.0, [0.0, 0.0], 0.0))?;
+            let there = b.map(scene(1.0, [1e5, -1e5], 0.0))?;
+            Ok(largest_to_mean(&there, &here))
+        },
+    ),
+    case(
+        "lifted_by_100_km",
+        "heights in f32 far from the origin",
+        MOVED,
+        1e-4,
+        |b| {
+            let here = b.map(scene(1.0, [0.0, 0.0], 0.0))?;
+            let there = b.map(scene(1.0, [0.0, 0.0], 1e5))?;
+            Ok(largest_to_mean(&there, &here))
+        },
+    ),
+    case(
+        "a_thousandth_of_the_size",
+        "tolerances in metres",
+        SCALED,
+        1e-4,
+        |b| scaled(b, 1e-3),
+    ),
+    case(
+        "a_thousand_times_the_size",
+        "tolerances in metres",
+        SCALED,
+        1e-4,
+        |b| scaled(b, 1e3),
+    ),
 ];
 
 fn scaled(bench: &mut Bench<'_>, scale: f64) -> Result<f64, Failure> {
@@ -62,9 +86,15 @@ fn scene(scale: f64, moved_m: [f64; 2], level_m: f64) -> Value {
     with(
         pool(),
         &[
-            ("/water/waves", json!([wave(0.02, 1.3, 0.0, 23.0), wave(0.012, 1.1, 90.0, 97.0)])),
+            (
+                "/water/waves",
+                json!([wave(0.02, 1.3, 0.0, 23.0), wave(0.012, 1.1, 90.0, 97.0)]),
+            ),
             ("/water/level_m", json!(level_m)),
-            ("/water/absorption_per_m", json!([0.35 / scale, 0.07 / scale, 0.03 / scale])),
+            (
+                "/water/absorption_per_m",
+                json!([0.35 / scale, 0.07 / scale, 0.03 / scale]),
+            ),
             ("/floor/depth_m", json!(2.0 * scale)),
             ("/floor/size_m", json!([40.0 * scale, 40.0 * scale])),
             ("/floor/center_m", at(0.0, 0.0)),

@@ -133,7 +133,7 @@ cases! {
         under_water_at_the_critical_angle,
         one_pixel,
         one_column_of_8192_pixels,
-        8192_by_8192_pixels,
+        pictures_of_8192_by_8192_pixels,
     }
 }
 
