@@ -49,6 +49,7 @@
 //! | [`accuracy`] | error of images, dials and their sweeps, plots and reports |
 //! | [`experiment`] | published experiments done again |
 //! | [`tuning`] | from a wanted error or time to dials |
+//! | [`hard_cases`] | scenes that break caustics renderers, and how that would show |
 //! | [`image`] | PNG, EXR, tone curve |
 //! | [`jobs`] | bounded queue and the one GPU thread |
 //! | [`http`] | routes; the only place that knows status codes is its error table |
@@ -63,6 +64,7 @@ pub mod config;
 pub mod experiment;
 pub mod frame;
 pub mod gpu;
+pub mod hard_cases;
 pub mod http;
 pub mod image;
 pub mod jobs;

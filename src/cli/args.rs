@@ -5,7 +5,9 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use super::error::CliError;
-use super::{accuracy, animate, calibrate, experiment, health, plan, render, selfcheck, serve};
+use super::{
+    accuracy, animate, calibrate, experiment, hard_cases, health, plan, render, selfcheck, serve,
+};
 use crate::config::{Limits, RenderConfig, ServeConfig};
 
 /// Renders water caustics, from the command line or as an HTTP service.
@@ -39,6 +41,8 @@ pub enum Command {
     Experiment(experiment::ExperimentArgs),
     /// Measures what predictions of time and error rest on, on this machine.
     Calibrate(calibrate::CalibrateArgs),
+    /// Runs the scenes that break caustics renderers, and says whether each holds on this machine.
+    HardCases(hard_cases::HardCasesArgs),
     /// Says which passes a scene needs, why, and how much memory they hold; renders nothing.
     Plan(plan::PlanArgs),
     /// Serves HTTP.
@@ -77,6 +81,7 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Accuracy(args) => accuracy::run(&args, &render, &limits),
         Command::Experiment(args) => experiment::run(&args, &render),
         Command::Calibrate(args) => calibrate::run(&args, &render),
+        Command::HardCases(args) => hard_cases::run(&args, &render),
         Command::Plan(args) => plan::run(&args, &render, &limits),
         Command::Serve(args) => serve::run(render, limits, args),
         Command::Selfcheck(args) => selfcheck::run(&args, &render),

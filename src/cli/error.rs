@@ -64,6 +64,14 @@ pub enum CliError {
         /// All checks.
         all: usize,
     },
+    /// Hard cases that do not end as they should.
+    #[error("{failed} of {all} hard cases do not end as they should")]
+    HardCases {
+        /// Cases that failed, or held although they are known to fail.
+        failed: usize,
+        /// All cases.
+        all: usize,
+    },
     /// The service does not run, or would not accept work.
     #[error("{url} is not ready: {reason}")]
     NotReady {
@@ -107,6 +115,7 @@ impl CliError {
             Self::Render(_) => EXIT_REFUSED,
             Self::Write { .. }
             | Self::SelfCheck { .. }
+            | Self::HardCases { .. }
             | Self::NotReady { .. }
             | Self::Serve(_) => EXIT_RETRY,
         }

@@ -13,6 +13,7 @@ pub mod error;
 pub mod experiment;
 pub mod files;
 pub mod frames;
+pub mod hard_cases;
 pub mod health;
 pub mod picture;
 pub mod plan;

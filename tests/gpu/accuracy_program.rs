@@ -75,7 +75,10 @@ fn bad_dials_are_refused_before_any_time_is_spent() {
     let cache = folder.0.join("truths");
     let out = folder.0.join("study");
     for (dial, wanted) in [
-        ("water_cell=16", "level_map_texels, level_of_detail, map_texels"),
+        (
+            "water_cell=16",
+            "level_map_texels, level_of_detail, map_texels",
+        ),
         ("water_cells", "name=a..b"),
         ("water_cells=64..16", "a below b"),
         ("water_cells=", "1 … 32"),

@@ -21,6 +21,7 @@ mod flat;
 mod folder;
 mod footprint;
 mod formulas;
+mod hard_cases;
 mod harness;
 mod instances;
 #[path = "../support/instances.rs"]

@@ -1,0 +1,185 @@
+//! Rendering with the checks that hold for every picture.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+use tokio_util::sync::CancellationToken;
+
+use super::case::{Case, Failure, Outcome, Verdict};
+use crate::config::Limits;
+use crate::frame::Frame;
+use crate::mesh::{Mesh, MeshStore};
+use crate::render::{RenderError, Renderer};
+use crate::scene::{LayerName, ResolvedScene, Scene, SceneError, resolve};
+
+/// Most that an energy account may be open by.
+const MOST_CLOSURE: f64 = 1e-5;
+
+/// A renderer, and what was seen on the way.
+#[derive(Debug)]
+pub struct Bench<'a> {
+    renderer: &'a mut Renderer,
+    meshes: MeshStore,
+    closure: f64,
+    warnings: BTreeMap<String, Option<f64>>,
+    picture: Option<Frame>,
+}
+
+impl<'a> Bench<'a> {
+    pub(super) fn new(renderer: &'a mut Renderer) -> Self {
+        Self {
+            renderer,
+            meshes: MeshStore::default(),
+            closure: 0.0,
+            warnings: BTreeMap::new(),
+            picture: None,
+        }
+    }
+
+    /// A scene; `objects[i].mesh` is the text of an OBJ.
+    pub(super) fn scene(&self, mut value: Value) -> Result<ResolvedScene, Failure> {
+        let mut meshes: Vec<std::sync::Arc<Mesh>> = Vec::new();
+        for object in value["objects"].as_array_mut().into_iter().flatten() {
+            let text = object["mesh"].as_str().unwrap_or_default().to_owned();
+            let mesh = self
+                .meshes
+                .insert_obj(text.as_bytes(), None)
+                .map_err(|error| Failure::Check(format!("the mesh is refused: {error}")))?
+                .mesh;
+            object["mesh"] = Value::from(mesh.id.clone());
+            meshes.push(mesh);
+        }
+        let scene = Scene::from_value(value)?;
+        let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
+        Ok(resolve(scene, &Limits::default(), find)?)
+    }
+
+    /// Renders a scene twice: both times the same bits, finite, and every account closed.
+    pub(super) fn render(&mut self, value: Value) -> Result<Frame, Failure> {
+        let resolved = self.scene(value)?;
+        self.render_resolved(&resolved)
+    }
+
+    pub(super) fn render_resolved(&mut self, resolved: &ResolvedScene) -> Result<Frame, Failure> {
+        let never = CancellationToken::new();
+        let frame = self.renderer.render(resolved, &never)?;
+        let again = self.renderer.render(resolved, &never)?;
+        for (name, layer) in &frame.layers {
+            if let Some(at) = layer.data.iter().position(|v| !v.is_finite()) {
+                return Err(Failure::Check(format!(
+                    "{name:?} is not finite at value {at}"
+                )));
+            }
+            let bits = |frame: &Frame| -> Vec<u32> {
+                frame.layers[name]
+                    .data
+                    .iter()
+                    .map(|v| v.to_bits())
+                    .collect()
+            };
+            if bits(&frame) != bits(&again) {
+                return Err(Failure::Check(format!(
+                    "{name:?} differs from one time to the next"
+                )));
+            }
+        }
+        for account in &frame.stats.energy {
+            self.closure = self.closure.max(account.closure);
+            let is_closed = account.closure <= MOST_CLOSURE;
+            if !is_closed {
+                return Err(Failure::Check(format!(
+                    "the energy account of light {} is open by {:e}",
+                    account.light, account.closure
+                )));
+            }
+        }
+        for warning in &frame.stats.warnings {
+            let flux_w = warning
+                .flux_w
+                .map(|flux| flux.iter().copied().fold(0.0, f64::max));
+            let known = self.warnings.entry(warning.code.clone()).or_default();
+            *known = match (*known, flux_w) {
+                (Some(a), Some(b)) => Some(a.max(b)),
+                (a, b) => a.or(b),
+            };
+        }
+        let shows = |name| frame.layers.contains_key(&name) && frame.width.min(frame.height) > 1;
+        if shows(LayerName::Radiance) || shows(LayerName::Irradiance) {
+            self.picture = Some(frame.clone());
+        }
+        Ok(frame)
+    }
+
+    /// The map of a scene, channel by channel, W/m².
+    pub(super) fn map(&mut self, value: Value) -> Result<Vec<[f64; 3]>, Failure> {
+        let frame = self.render(value)?;
+        Ok(texels(&frame, LayerName::Irradiance))
+    }
+
+    /// Whether a warning came with any picture so far.
+    pub(super) fn was_warned_of(&self, code: &str) -> bool {
+        self.warnings.contains_key(code)
+    }
+
+    /// The scene must be refused with a finding at `pointer`: 0, or 1 where it is not.
+    pub(super) fn refused_at(&mut self, value: Value, pointer: &str) -> Result<f64, Failure> {
+        match self.render(value) {
+            Err(Failure::Scene(SceneError { issues })) => {
+                let found = issues
+                    .iter()
+                    .any(|issue| issue.pointer == pointer && !issue.accepted.is_empty());
+                Ok(if found { 0.0 } else { 1.0 })
+            }
+            Err(Failure::Render(RenderError::OverBudget {
+                needed_bytes,
+                budget_bytes,
+                ..
+            })) if pointer.is_empty() => Ok(if needed_bytes > budget_bytes {
+                0.0
+            } else {
+                1.0
+            }),
+            Err(other) => Err(other),
+            Ok(_) => Err(Failure::Check("it is not refused".to_owned())),
+        }
+    }
+
+    pub(super) fn outcome(self, case: &'static Case, result: Result<f64, Failure>) -> Outcome {
+        let (figure, failure) = match result {
+            // NaN is never under a bound.
+            Ok(figure) if figure <= case.bound => (Some(figure), None),
+            Ok(figure) => (
+                Some(figure),
+                Some(format!("{figure:e} is above {:e}", case.bound)),
+            ),
+            Err(failure) => (None, Some(failure.to_string())),
+        };
+        let verdict = match (failure.is_some(), case.known_failure.is_some()) {
+            (false, false) => Verdict::Holds,
+            (true, false) => Verdict::Fails,
+            (true, true) => Verdict::FailsAsKnown,
+            (false, true) => Verdict::HoldsAfterAll,
+        };
+        Outcome {
+            case,
+            verdict,
+            figure,
+            failure,
+            closure: self.closure,
+            warnings: self.warnings.into_iter().collect(),
+            picture: self.picture,
+        }
+    }
+}
+
+/// The pixels of a layer of three or four channels (the fourth is left out).
+pub(super) fn texels(frame: &Frame, name: LayerName) -> Vec<[f64; 3]> {
+    let Some(layer) = frame.layers.get(&name) else {
+        return Vec::new();
+    };
+    layer
+        .data
+        .chunks_exact(layer.channels)
+        .map(|p| std::array::from_fn(|c| f64::from(p[c.min(layer.channels - 1)])))
+        .collect()
+}

@@ -1,0 +1,123 @@
+//! What a case is, and what came of it.
+
+use serde::{Deserialize, Serialize};
+
+use super::bench::Bench;
+use crate::frame::Frame;
+use crate::render::RenderError;
+use crate::scene::SceneError;
+
+/// What a case is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Family {
+    /// Suns at and below the horizon, along slopes, dim and bright.
+    Light,
+    /// Flat, tiny and steep waves, depths, indices, times, absorption.
+    Water,
+    /// The same scene elsewhere, smaller and larger.
+    Place,
+    /// Broken, thin, tiny, huge and awkwardly placed meshes.
+    Mesh,
+    /// Footprints that fold, collapse and spread.
+    Fold,
+    /// Awkward cameras and sizes of pictures.
+    Camera,
+}
+
+impl Family {
+    /// All families, in the order of the suite.
+    pub const ALL: [Self; 6] = [
+        Self::Light,
+        Self::Water,
+        Self::Place,
+        Self::Mesh,
+        Self::Fold,
+        Self::Camera,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Light => "light",
+            Self::Water => "water",
+            Self::Place => "place",
+            Self::Mesh => "mesh",
+            Self::Fold => "fold",
+            Self::Camera => "camera",
+        }
+    }
+}
+
+/// A hard case.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Its name: words joined by `_`.
+    pub name: &'static str,
+    /// What it is about.
+    pub family: Family,
+    /// What could break.
+    pub breaks: &'static str,
+    /// How that would show: what the figure is.
+    pub check: &'static str,
+    /// Most that the figure may be.
+    pub bound: f64,
+    /// Renders, and gives the figure.
+    pub run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
+    /// Why it is known to fail, where it is: then it has to.
+    pub known_failure: Option<&'static str>,
+}
+
+/// Why there is no figure.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// The scene was refused.
+    #[error("refused: {0}")]
+    Scene(#[from] SceneError),
+    /// There is no frame.
+    #[error("not rendered: {0}")]
+    Render(#[from] RenderError),
+    /// A check that holds for every picture failed.
+    #[error("{0}")]
+    Check(String),
+}
+
+/// How a case ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// As it should.
+    Holds,
+    /// Not as it should.
+    Fails,
+    /// As is known.
+    FailsAsKnown,
+    /// It is said to fail and holds: the note is out of date.
+    HoldsAfterAll,
+}
+
+impl Verdict {
+    /// Whether nobody has to look.
+    pub fn is_expected(self) -> bool {
+        matches!(self, Self::Holds | Self::FailsAsKnown)
+    }
+}
+
+/// What came of a case.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The case.
+    pub case: &'static Case,
+    /// How it ended.
+    pub verdict: Verdict,
+    /// Its figure.
+    pub figure: Option<f64>,
+    /// What went wrong, in a sentence.
+    pub failure: Option<String>,
+    /// Largest closure of the energy accounts of its pictures.
+    pub closure: f64,
+    /// Codes of the warnings that its pictures came with, and the flux concerned where it was measured, W.
+    pub warnings: Vec<(String, Option<f64>)>,
+    /// The last picture that is worth showing.
+    pub picture: Option<Frame>,
+}

@@ -1,0 +1,190 @@
+//! Suns at and below the horizon, along slopes, dim and bright.
+
+use serde_json::{Value, json};
+
+use super::bench::Bench;
+use super::case::{Case, Failure, Family};
+use super::truths::{flat_error, largest_to_mean, pool, reference_error, sun, waves, with};
+
+/// A case of this family.
+const fn case(
+    name: &'static str,
+    breaks: &'static str,
+    check: &'static str,
+    bound: f64,
+    run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
+) -> Case {
+    Case {
+        name,
+        family: Family::Light,
+        breaks,
+        check,
+        bound,
+        run,
+        known_failure: None,
+    }
+}
+
+const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
+const REFERENCE: &str = "relative L1 against the reference";
+const DARK: &str = "share of texels that are not black";
+const GRAZING: &str = "cosines near 0, Fresnel near 1, windows of very long rays";
+
+pub(super) const CASES: &[Case] = &[
+    case(
+        "sun_in_the_zenith",
+        "an azimuth without meaning",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, flat(90.0)),
+    ),
+    case("sun_at_10_degrees", GRAZING, CLOSED_FORM, 1e-4, |b| {
+        flat_error(b, flat(10.0))
+    }),
+    case("sun_at_1_degree", GRAZING, CLOSED_FORM, 1e-4, |b| {
+        flat_error(b, flat(1.0))
+    }),
+    case(
+        "sun_at_a_hundredth_of_a_degree",
+        GRAZING,
+        CLOSED_FORM,
+        2e-4,
+        |b| flat_error(b, flat(0.01)),
+    ),
+    case("sun_on_the_horizon", "0/0 in refraction", DARK, 0.0, |b| {
+        dark(b, flat(0.0))
+    }),
+    case(
+        "sun_below_the_horizon",
+        "light from below",
+        DARK,
+        0.0,
+        |b| dark(b, flat(-5.0)),
+    ),
+    case(
+        "waves_under_a_sun_at_10_degrees",
+        "waves that look away from the sun",
+        REFERENCE,
+        0.03,
+        |b| reference_error(b, wavy(10.0)),
+    ),
+    case(
+        "waves_under_a_sun_at_1_degree",
+        "waves that look away from the sun",
+        REFERENCE,
+        0.05,
+        |b| reference_error(b, wavy(1.0)),
+    ),
+    case(
+        "waves_under_a_sun_at_a_hundredth_of_a_degree",
+        "waves that look away from the sun",
+        REFERENCE,
+        0.05,
+        |b| reference_error(b, wavy(0.01)),
+    ),
+    case(
+        "sun_along_the_steepest_slope",
+        "cos θ_i = 0 where Fresnel and refraction are steepest",
+        REFERENCE,
+        0.03,
+        |b| {
+            let slope: f64 = std::f64::consts::TAU * 0.05;
+            let scene = with(
+                pool(),
+                &[
+                    (
+                        "/water/waves",
+                        json!([{ "kind": "sine", "amplitude_m": 0.05, "wavelength_m": 1.0 }]),
+                    ),
+                    ("/lights/0", sun(slope.atan().to_degrees(), 0.0)),
+                ],
+            );
+            reference_error(b, scene)
+        },
+    ),
+    case("no_irradiance", "a division by the flux", DARK, 0.0, |b| {
+        dark(
+            b,
+            with(
+                wavy(60.0),
+                &[("/lights/0/irradiance_w_m2", json!([0, 0, 0]))],
+            ),
+        )
+    }),
+    case(
+        "one_dark_channel",
+        "a division by the flux of a channel",
+        "worst texel against E cos θ T e^(−cd)",
+        1e-4,
+        |b| {
+            flat_error(
+                b,
+                with(
+                    flat(50.0),
+                    &[("/lights/0/irradiance_w_m2", json!([0, 1, 0]))],
+                ),
+            )
+        },
+    ),
+    case(
+        "dim_and_bright_suns_together",
+        "the dim sun lost in the sums of the bright one",
+        "largest difference of the sum from the two suns alone, and of the dim from the scaled bright one, to the mean",
+        1e-6,
+        |b| {
+            let dim = json!([1e-6, 1e-6, 1e-6]);
+            let bright = json!([1e6, 1e6, 1e6]);
+            let mut scene = wavy(60.0);
+            let mut of = |b: &mut Bench<'_>, suns: &[&Value]| -> Result<Vec<[f64; 3]>, Failure> {
+                let lights: Vec<Value> = suns
+                    .iter()
+                    .map(|&power| with(sun(60.0, 30.0), &[("/irradiance_w_m2", power.clone())]))
+                    .collect();
+                scene["lights"] = Value::Array(lights);
+                b.map(scene.clone())
+            };
+            let both = of(b, &[&dim, &bright])?;
+            let one = of(b, &[&bright])?;
+            let other = of(b, &[&dim])?;
+            let sum: Vec<[f64; 3]> = add(&one, &other);
+            let scaled: Vec<[f64; 3]> = other.iter().map(|t| t.map(|v| v * 1e12)).collect();
+            Ok(largest_to_mean(&both, &sum).max(largest_to_mean(&scaled, &one)))
+        },
+    ),
+];
+
+fn add(a: &[[f64; 3]], b: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| std::array::from_fn(|c| a[c] + b[c]))
+        .collect()
+}
+
+/// Flat water that absorbs.
+fn flat(elevation_deg: f64) -> Value {
+    with(
+        pool(),
+        &[
+            ("/water/absorption_per_m", json!([0.35, 0.07, 0.03])),
+            ("/lights/0", sun(elevation_deg, 25.0)),
+        ],
+    )
+}
+
+fn wavy(elevation_deg: f64) -> Value {
+    with(
+        pool(),
+        &[
+            ("/water/waves", waves()),
+            ("/lights/0", sun(elevation_deg, 25.0)),
+            ("/quality/water_cells", json!(256)),
+        ],
+    )
+}
+
+/// Share of texels that are not black.
+fn dark(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
+    let map = bench.map(scene)?;
+    let lit = map.iter().filter(|t| t.iter().any(|&v| v != 0.0)).count();
+    Ok(lit as f64 / map.len() as f64)
+}

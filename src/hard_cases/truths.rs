@@ -1,0 +1,122 @@
+//! What pictures are compared with: closed forms, the reference, other pictures.
+
+use serde_json::{Value, json};
+
+use super::bench::Bench;
+use super::case::Failure;
+use crate::accuracy::metrics;
+use crate::reference::closed_form::flat_water_irradiance;
+use crate::reference::{ReferenceSettings, irradiance_map};
+use crate::scene::Light;
+
+/// Side of the maps, texels.
+pub(super) const SIDE: u32 = 32;
+
+/// A floor 2 m deep under a sun of 60°, its map over the middle 2 m × 2 m; no waves.
+pub(super) fn pool() -> Value {
+    json!({
+        "water": { "waves": [] },
+        "floor": { "depth_m": 2, "size_m": [40, 40] },
+        "lights": [sun(60.0, 30.0)],
+        "quality": { "water_cells": 128 },
+        "output": { "kind": "irradiance_map", "receiver": "floor",
+                    "min_m": [-1, -1], "max_m": [1, 1], "width": SIDE, "height": SIDE }
+    })
+}
+
+/// A sun of 1 W/m².
+pub(super) fn sun(elevation_deg: f64, azimuth_deg: f64) -> Value {
+    json!({ "kind": "sun", "elevation_deg": elevation_deg, "azimuth_deg": azimuth_deg, "irradiance_w_m2": [1, 1, 1] })
+}
+
+/// Two crossing sines of slope 0.1 … 0.2.
+pub(super) fn waves() -> Value {
+    json!([
+        { "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 1.3, "direction_deg": 20, "phase_deg": 23 },
+        { "kind": "sine", "amplitude_m": 0.012, "wavelength_m": 0.8, "direction_deg": 100, "phase_deg": 97 }
+    ])
+}
+
+/// [`pool`] with other values at some JSON pointers; what is not there is added.
+pub(super) fn with(mut scene: Value, changes: &[(&str, Value)]) -> Value {
+    for (pointer, value) in changes {
+        let mut place = &mut scene;
+        for key in pointer.split('/').skip(1) {
+            place = match key.parse::<usize>() {
+                Ok(index) if place.is_array() => &mut place[index],
+                _ => &mut place[key],
+            };
+        }
+        *place = value.clone();
+    }
+    scene
+}
+
+/// Largest relative error of a map under flat water against the closed form, all suns together. Where no light is due, any is an
+/// error of 1.
+pub(super) fn flat_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
+    let resolved = bench.scene(scene)?;
+    let depth_m = resolved.scene.floor.as_ref().map_or(0.0, |f| f.depth_m);
+    let mut truth = [0.0; 3];
+    for light in &resolved.scene.lights {
+        if let Light::Sun(sun) = light {
+            let one = flat_water_irradiance(&resolved.scene.water, depth_m, sun);
+            for (sum, value) in truth.iter_mut().zip(one) {
+                *sum += value;
+            }
+        }
+    }
+    let frame = bench.render_resolved(&resolved)?;
+    let texels = super::bench::texels(&frame, crate::scene::LayerName::Irradiance);
+    Ok(texels
+        .iter()
+        .flat_map(|texel| texel.iter().zip(truth))
+        .map(|(&found, truth)| {
+            if truth > 0.0 {
+                (found / truth - 1.0).abs()
+            } else {
+                f64::from(u8::from(found != 0.0))
+            }
+        })
+        .fold(0.0, worst))
+}
+
+/// Relative L1 error of a floor map against the reference.
+pub(super) fn reference_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
+    let resolved = bench.scene(scene)?;
+    let settings = ReferenceSettings {
+        target_error: Some(2e-3),
+        max_rays: 40_000_000,
+        initial_rays: 1 << 20,
+    };
+    let truth = irradiance_map(&resolved, &settings, &|_| {})
+        .map_err(|error| Failure::Check(format!("no reference: {error}")))?;
+    let frame = bench.render_resolved(&resolved)?;
+    let found = super::bench::texels(&frame, crate::scene::LayerName::Irradiance);
+    metrics::relative_l1(found.as_flattened(), truth.irradiance.as_flattened())
+        .map_err(|error| Failure::Check(error.to_string()))
+}
+
+/// Largest difference of two maps as a share of the mean of the second.
+pub(super) fn largest_to_mean(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    let (a, b) = (a.as_flattened(), b.as_flattened());
+    if a.len() != b.len() || b.is_empty() {
+        return f64::INFINITY;
+    }
+    let mean = b.iter().sum::<f64>() / b.len() as f64;
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| ((a - b) / mean).abs())
+        .fold(0.0, worst)
+}
+
+/// Σ|a − b| / Σ|b|.
+pub(super) fn relative_l1(a: &[[f64; 3]], b: &[[f64; 3]]) -> Result<f64, Failure> {
+    metrics::relative_l1(a.as_flattened(), b.as_flattened())
+        .map_err(|error| Failure::Check(error.to_string()))
+}
+
+/// `f64::max`, but NaN becomes infinity instead of getting lost.
+pub(super) fn worst(a: f64, b: f64) -> f64 {
+    if b.is_nan() { f64::INFINITY } else { a.max(b) }
+}

@@ -1,0 +1,311 @@
+//! Flat, tiny and steep waves, depths, indices, times, absorption.
+
+use serde_json::{Value, json};
+
+use super::bench::Bench;
+use super::case::{Case, Failure, Family};
+use super::truths::{flat_error, largest_to_mean, pool, reference_error, sun, waves, with, worst};
+
+const fn case(
+    name: &'static str,
+    breaks: &'static str,
+    check: &'static str,
+    bound: f64,
+    run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
+) -> Case {
+    Case {
+        name,
+        family: Family::Water,
+        breaks,
+        check,
+        bound,
+        run,
+        known_failure: None,
+    }
+}
+
+const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
+const REFERENCE: &str = "relative L1 against the reference";
+const PERIOD: &str = "largest difference of two moments a period apart, to the mean";
+const PHASE: &str = "phases in f32, or too few digits of the time";
+const AGAIN: &str = "rays that would meet the water again, wide drifts, slopes that look away";
+
+pub(super) const CASES: &[Case] = &[
+    case(
+        "flat_water",
+        "0/0 in windows and slopes",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, pool()),
+    ),
+    case(
+        "ripples_of_a_millimetre",
+        "waves far smaller than a cell, heights below the rounding of metres",
+        "mean against that of flat water; more than 1 where no warning is given",
+        1e-3,
+        |b| {
+            let scene = with(
+                pool(),
+                &[(
+                    "/water/waves",
+                    json!([{ "kind": "sine", "amplitude_m": 1e-7, "wavelength_m": 1e-3 }]),
+                )],
+            );
+            let rippled = mean(&b.map(scene)?);
+            let warned = if b.was_warned_of("waves_undersampled") {
+                0.0
+            } else {
+                1.0
+            };
+            let flat = mean(&b.map(pool())?);
+            Ok((rippled / flat - 1.0).abs() + warned)
+        },
+    ),
+    case("slopes_of_1", AGAIN, REFERENCE, 0.05, |b| {
+        reference_error(b, steep(1.0))
+    }),
+    case("slopes_of_5", AGAIN, REFERENCE, 0.08, |b| {
+        reference_error(b, steep(5.0))
+    }),
+    case("slopes_of_20", AGAIN, REFERENCE, 0.2, |b| {
+        reference_error(b, steep(20.0))
+    }),
+    case(
+        "steep_waves_are_warned_of",
+        "a silent limit of the model",
+        "0 where `waves_shade_waves` is among the warnings",
+        0.0,
+        |b| {
+            b.map(with(steep(5.0), &[("/lights/0", sun(30.0, 0.0))]))?;
+            Ok(f64::from(u8::from(!b.was_warned_of("waves_shade_waves"))))
+        },
+    ),
+    case(
+        "floor_at_depth_0",
+        "rays without length",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(0))])),
+    ),
+    case(
+        "floor_at_a_tenth_of_a_millimetre",
+        "rays of almost no length",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(1e-4))])),
+    ),
+    case(
+        "floor_at_11000_metres",
+        "positions in f32 far below",
+        CLOSED_FORM,
+        1e-4,
+        |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(11_000))])),
+    ),
+    case(
+        "waves_over_11000_metres",
+        "sub-millimetre slopes that move light by kilometres",
+        "mean against that of flat water",
+        0.05,
+        |b| {
+            let changes = [
+                ("/floor/depth_m", json!(11_000)),
+                ("/floor/size_m", json!([1e6, 1e6])),
+                ("/output/min_m", json!([-2e4, -2e4])),
+                ("/output/max_m", json!([2e4, 2e4])),
+            ];
+            let flat = with(pool(), &changes);
+            let wavy = with(
+                flat.clone(),
+                &[(
+                    "/water/waves",
+                    json!([{ "kind": "sine", "amplitude_m": 1.0, "wavelength_m": 4000.0, "direction_deg": 20 }]),
+                )],
+            );
+            Ok((mean(&b.map(wavy)?) / mean(&b.map(flat)?) - 1.0).abs())
+        },
+    ),
+    case(
+        "index_1",
+        "waves that must not show at all",
+        "worst texel against an even floor",
+        2e-5,
+        |b| {
+            let map = b.map(wavy(1.0))?;
+            let even = 60_f64.to_radians().sin();
+            Ok(map
+                .as_flattened()
+                .iter()
+                .map(|v| (v / even - 1.0).abs())
+                .fold(0.0, worst))
+        },
+    ),
+    case(
+        "index_1_0001",
+        "differences of nearly equal directions",
+        REFERENCE,
+        5e-3,
+        |b| reference_error(b, wavy(1.0001)),
+    ),
+    case("index_2_4", "strong refraction", REFERENCE, 0.03, |b| {
+        reference_error(b, wavy(2.4))
+    }),
+    case(
+        "index_below_1",
+        "total reflection on the way in",
+        "0 where it is refused at /water/ior",
+        0.0,
+        |b| b.refused_at(wavy(0.9), "/water/ior"),
+    ),
+    case("a_period_after_0", PHASE, PERIOD, 1e-5, |b| period(b, 0.0)),
+    case(
+        "a_period_after_a_million_seconds",
+        PHASE,
+        PERIOD,
+        1e-5,
+        |b| period(b, 1e6),
+    ),
+    case(
+        "a_period_after_a_billion_seconds",
+        PHASE,
+        PERIOD,
+        1e-5,
+        |b| period(b, 1e9),
+    ),
+    case(
+        "a_period_before_minus_a_million_seconds",
+        PHASE,
+        PERIOD,
+        1e-5,
+        |b| period(b, -1e6),
+    ),
+    case(
+        "absorption_of_a_billionth",
+        "a series of e^x − 1 cut off",
+        CLOSED_FORM,
+        1e-4,
+        |b| {
+            flat_error(
+                b,
+                with(
+                    pool(),
+                    &[("/water/absorption_per_m", json!([1e-9, 0, 1e-9]))],
+                ),
+            )
+        },
+    ),
+    case(
+        "absorption_of_1000_per_metre",
+        "underflow of e^(−cd)",
+        CLOSED_FORM,
+        1e-4,
+        |b| {
+            flat_error(
+                b,
+                with(pool(), &[("/water/absorption_per_m", json!([1000, 0, 1]))]),
+            )
+        },
+    ),
+    case(
+        "waves_that_cancel",
+        "residues of phases and directions that should be nothing",
+        "largest difference from flat water, to the mean",
+        2e-5,
+        |b| {
+            let one = |direction: f64, phase: f64| json!({ "kind": "sine", "amplitude_m": 0.05, "wavelength_m": 0.9, "direction_deg": direction, "phase_deg": phase });
+            // The same crests from the other side are the same wave backwards: −sin(−x) cancels only with its own phase.
+            let cancelling = json!([
+                one(30.0, 0.0),
+                one(30.0, 180.0),
+                one(390.0, 77.0),
+                one(-330.0, 257.0)
+            ]);
+            let found = b.map(with(pool(), &[("/water/waves", cancelling)]))?;
+            let flat = b.map(pool())?;
+            Ok(largest_to_mean(&found, &flat))
+        },
+    ),
+    case(
+        "a_line_focus_on_the_floor",
+        "footprints that collapse to segments",
+        REFERENCE,
+        0.05,
+        |b| reference_error(b, focus(&[0.0])),
+    ),
+    case(
+        "a_point_focus_on_the_floor",
+        "footprints that collapse to points",
+        REFERENCE,
+        0.05,
+        |b| reference_error(b, focus(&[0.0, 90.0])),
+    ),
+];
+
+fn mean(map: &[[f64; 3]]) -> f64 {
+    let values = map.as_flattened();
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+fn wavy(ior: f64) -> Value {
+    with(
+        pool(),
+        &[
+            ("/water/waves", waves()),
+            ("/water/ior", json!(ior)),
+            ("/quality/water_cells", json!(256)),
+        ],
+    )
+}
+
+/// One sine of this steepest slope under the zenith.
+fn steep(slope: f64) -> Value {
+    with(
+        pool(),
+        &[
+            (
+                "/water/waves",
+                json!([{ "kind": "sine", "amplitude_m": slope / std::f64::consts::TAU, "wavelength_m": 1.0, "direction_deg": 20 }]),
+            ),
+            ("/floor/depth_m", json!(5)),
+            ("/lights/0", sun(90.0, 0.0)),
+            ("/quality/water_cells", json!(512)),
+        ],
+    )
+}
+
+/// Sines whose crests focus a sun in the zenith on the floor at 2 m: f = 1/(A k² (1 − 1/n)).
+fn focus(directions_deg: &[f64]) -> Value {
+    let k = std::f64::consts::TAU;
+    let amplitude_m = 1.0 / (2.0 * k * k * (1.0 - 1.0 / 1.333));
+    let waves: Vec<Value> = directions_deg
+        .iter()
+        .map(|direction| {
+            json!({ "kind": "sine", "amplitude_m": amplitude_m, "wavelength_m": 1.0, "direction_deg": direction, "phase_deg": 90 })
+        })
+        .collect();
+    with(
+        pool(),
+        &[
+            ("/water/waves", Value::Array(waves)),
+            ("/lights/0", sun(90.0, 0.0)),
+            ("/quality/water_cells", json!(256)),
+        ],
+    )
+}
+
+/// Two moments a period apart.
+fn period(bench: &mut Bench<'_>, time_s: f64) -> Result<f64, Failure> {
+    let at = |time_s: f64| {
+        let mut waves = waves();
+        // Both have the same period, of a length that f64 holds exactly at any of the times.
+        for wave in waves.as_array_mut().into_iter().flatten() {
+            wave["period_s"] = json!(1.5);
+        }
+        with(
+            pool(),
+            &[("/water/waves", waves), ("/time_s", json!(time_s))],
+        )
+    };
+    let now = bench.map(at(time_s))?;
+    let later = bench.map(at(time_s + 1.5))?;
+    Ok(largest_to_mean(&later, &now))
+}

@@ -1,0 +1,150 @@
+//! The suite of hard cases, a test each; the names here and the suite's are compared.
+
+use caustica::hard_cases::{self, Verdict};
+
+use super::harness::renderer;
+
+/// Runs a case and says what came of it.
+fn check(name: &str) {
+    let case = hard_cases::find(name).unwrap_or_else(|| panic!("there is no case {name}"));
+    let outcome = hard_cases::run(case, &mut renderer());
+    println!(
+        "{} / {name}: {:.1e} of {:.0e} ({}), closure {:.0e}, warnings {:?}",
+        case.family.name(),
+        outcome.figure.unwrap_or(f64::NAN),
+        case.bound,
+        case.check,
+        outcome.closure,
+        outcome.warnings
+    );
+    assert!(
+        outcome.verdict.is_expected(),
+        "{name}, where {} could break: {:?}, {}",
+        case.breaks,
+        outcome.verdict,
+        outcome.failure.unwrap_or_default()
+    );
+    assert_eq!(
+        outcome.verdict == Verdict::FailsAsKnown,
+        case.known_failure.is_some()
+    );
+}
+
+/// Declares a test for each case, and the list of their names.
+macro_rules! cases {
+    ($($family:ident { $($name:ident),+ $(,)? })+) => {
+        $(mod $family {$(
+            #[test]
+            fn $name() {
+                super::check(stringify!($name));
+            }
+        )+})+
+
+        const NAMES: &[(&str, &str)] = &[$($((stringify!($family), stringify!($name))),+),+];
+    };
+}
+
+cases! {
+    light {
+        sun_in_the_zenith,
+        sun_at_10_degrees,
+        sun_at_1_degree,
+        sun_at_a_hundredth_of_a_degree,
+        sun_on_the_horizon,
+        sun_below_the_horizon,
+        waves_under_a_sun_at_10_degrees,
+        waves_under_a_sun_at_1_degree,
+        waves_under_a_sun_at_a_hundredth_of_a_degree,
+        sun_along_the_steepest_slope,
+        no_irradiance,
+        one_dark_channel,
+        dim_and_bright_suns_together,
+    }
+    water {
+        flat_water,
+        ripples_of_a_millimetre,
+        slopes_of_1,
+        slopes_of_5,
+        slopes_of_20,
+        steep_waves_are_warned_of,
+        floor_at_depth_0,
+        floor_at_a_tenth_of_a_millimetre,
+        floor_at_11000_metres,
+        waves_over_11000_metres,
+        index_1,
+        index_1_0001,
+        index_2_4,
+        index_below_1,
+        a_period_after_0,
+        a_period_after_a_million_seconds,
+        a_period_after_a_billion_seconds,
+        a_period_before_minus_a_million_seconds,
+        absorption_of_a_billionth,
+        absorption_of_1000_per_metre,
+        waves_that_cancel,
+        a_line_focus_on_the_floor,
+        a_point_focus_on_the_floor,
+    }
+    place {
+        moved_by_100_km,
+        lifted_by_100_km,
+        a_thousandth_of_the_size,
+        a_thousand_times_the_size,
+    }
+    mesh {
+        one_triangle,
+        degenerate_triangles_among_sound_ones,
+        duplicate_triangles,
+        needle_triangles,
+        nothing_but_zero_area,
+        flipped_winding,
+        mixed_winding,
+        an_open_box,
+        a_mesh_through_itself,
+        three_sheets_on_an_edge,
+        wholly_above_the_water,
+        cut_by_the_surface,
+        touching_the_floor,
+        below_the_floor,
+        around_the_camera,
+        a_plate_across_the_light,
+        a_rod_thinner_than_a_map_texel,
+        a_million_triangles,
+        detail_of_a_centimetre_a_thousand_kilometres_out,
+        a_wall_without_thickness_edge_on,
+    }
+    fold {
+        footprints_that_turn_inside_out,
+        footprints_within_one_texel,
+        footprints_of_a_hundred_thousand_texels,
+        footprints_of_millions_of_texels,
+        texels_long_and_thin,
+        every_corner_on_a_texel_corner,
+        sums_beyond_32_bits,
+    }
+    camera {
+        a_micrometre_under_the_surface,
+        a_micrometre_over_the_surface,
+        on_the_surface,
+        on_a_wave,
+        along_its_own_up,
+        a_field_of_view_of_a_tenth_of_a_degree,
+        a_field_of_view_of_179_degrees,
+        under_water_at_the_critical_angle,
+        one_pixel,
+        one_column_of_8192_pixels,
+        pictures_of_8192_by_8192_pixels,
+    }
+}
+
+#[test]
+fn every_case_of_the_suite_has_its_test() {
+    let suite: Vec<(&str, &str)> = hard_cases::all()
+        .map(|case| (case.family.name(), case.name))
+        .collect();
+    assert_eq!(suite, NAMES);
+    let mut names: Vec<&str> = suite.iter().map(|(_, name)| *name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), suite.len(), "names are unique");
+}
