@@ -39,7 +39,8 @@ impl<'a> Bench<'a> {
     /// A scene; `objects[i].mesh` is the text of an OBJ.
     pub(super) fn scene(&self, mut value: Value) -> Result<ResolvedScene, Failure> {
         let mut meshes: Vec<std::sync::Arc<Mesh>> = Vec::new();
-        for object in value["objects"].as_array_mut().into_iter().flatten() {
+        let objects = value.get_mut("objects").and_then(Value::as_array_mut);
+        for object in objects.into_iter().flatten() {
             let text = object["mesh"].as_str().unwrap_or_default().to_owned();
             let mesh = self
                 .meshes

@@ -68,6 +68,14 @@ pub struct Case {
     pub known_failure: Option<&'static str>,
 }
 
+impl Case {
+    /// The same case, known to fail.
+    pub(super) const fn known_to_fail(mut self, why: &'static str) -> Self {
+        self.known_failure = Some(why);
+        self
+    }
+}
+
 /// Why there is no figure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {

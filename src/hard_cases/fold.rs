@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::bench::Bench;
 use super::case::{Case, Failure, Family};
-use super::truths::{flat_error, largest_to_mean, pool, reference_error, sun, waves, with};
+use super::truths::{flat_error, largest_relative, pool, reference_error, sun, waves, with};
 
 const fn case(
     name: &'static str,
@@ -90,7 +90,7 @@ pub(super) const CASES: &[Case] = &[
     case(
         "sums_beyond_32_bits",
         "a focus that wraps a sum",
-        "largest difference of the scaled sun's map from the sun's, to the mean",
+        "largest relative difference of the scaled sun's map from the sun's",
         1e-6,
         |b| {
             let k = std::f64::consts::TAU;
@@ -119,7 +119,7 @@ pub(super) const CASES: &[Case] = &[
                 .iter()
                 .map(|t| t.map(|v| v * 1e-9))
                 .collect();
-            Ok(largest_to_mean(&large, &one))
+            Ok(largest_relative(&large, &one))
         },
     ),
 ];

@@ -110,6 +110,24 @@ pub(super) fn largest_to_mean(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
         .fold(0.0, worst)
 }
 
+/// Largest |a − b| / |b| of two maps; where b is 0, any a is a difference of 1.
+pub(super) fn largest_relative(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    let (a, b) = (a.as_flattened(), b.as_flattened());
+    if a.len() != b.len() || b.is_empty() {
+        return f64::INFINITY;
+    }
+    a.iter()
+        .zip(b)
+        .map(|(&a, &b)| {
+            if b == 0.0 {
+                f64::from(u8::from(a != 0.0))
+            } else {
+                ((a - b) / b).abs()
+            }
+        })
+        .fold(0.0, worst)
+}
+
 /// Σ|a − b| / Σ|b|.
 pub(super) fn relative_l1(a: &[[f64; 3]], b: &[[f64; 3]]) -> Result<f64, Failure> {
     metrics::relative_l1(a.as_flattened(), b.as_flattened())
