@@ -61,7 +61,7 @@ pub struct Quality {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(minimum = 0.1, maximum = 3_600_000.0)]
     pub time_budget_ms: Option<f64>,
-    /// Whether the frame estimates its own error (`stats.accuracy.estimated_error`) by doing the light a second time with half the
+    /// Whether the frame estimates its own error (`stats.accuracy.estimated_error`) by doing the light a second time with two fifths of the
     /// water cells. Default false.
     pub estimate_error: bool,
     /// Rays per pixel of a view along each side, 1 … 8. Default 1. Smooths edges; the camera's passes cost its square. Layers
