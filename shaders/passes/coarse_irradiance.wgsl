@@ -12,8 +12,9 @@
 fn coarse_irradiance_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let index = (group.y * groups.x + group.x) * 64u + invocation;
     if index >= resolve.texel_count { return; }
+    let resolved = resolved_w_m2(index);
     for (var channel = 0u; channel < 3u; channel++) {
-        let value = resolved_w_m2(index, channel);
+        let value = resolved[channel];
         let at = 3u * (resolve.first_output + index) + channel;
         if resolve.adds == 1u { coarse_irradiance[at] += value; } else { coarse_irradiance[at] = value; }
     }

@@ -53,7 +53,7 @@ struct CellSums {
 
 fn deposit_beam(cell: vec2u, half: u32) -> CellSums {
     let b = grid_beam(cell, half);
-    var sums = CellSums(b.unit_flux, b.unit_flux - b.transmitted, Losses(0.0, vec3f(0.0), vec3f(0.0)));
+    var sums = CellSums(b.unit_flux, b.unit_flux - b.transmitted, NO_LOSSES);
     let beam_index = 2u * (cell.y * light.cells + cell.x) + half;
     if b.transmitted == 0.0 { return sums; }
     if !is_whole(b) {
@@ -68,14 +68,18 @@ fn deposit_beam(cell: vec2u, half: u32) -> CellSums {
     // By planes meshes get their light in another pass.
     if PLANES && b.receiver.x > FLOOR { return sums; }
     sums.losses.extinguished = b.transmitted * mean_extinction(b.t);
+    let arriving = b.transmitted * mean_transmission(b.t);
     let target_map = target_of(receivers[b.receiver.x]);
+    if target_map.offset == NOWHERE {
+        sums.losses.landed = arriving;
+        return sums;
+    }
     let box = texel_box(target_map, b.uv[0], b.uv[1], b.uv[2]);
     let extent = vec2u(box.last - box.first + 1);
     if extent.x * extent.y > light.wide_texels || is_segment(b.uv[0], b.uv[1], b.uv[2]) {
         push_wide(beam_index);
         return sums;
     }
-    let arriving = b.transmitted * mean_transmission(b.t);
     sums.losses.left = arriving * deposit_area(target_map, b.uv[0], b.uv[1], b.uv[2], arriving);
     return sums;
 }
@@ -85,7 +89,7 @@ fn deposit_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     let cell = group.xy * 8u + vec2u(invocation & 7u, invocation >> 3u);
     var emitted = 0.0;
     var reflected = 0.0;
-    var losses = Losses(0.0, vec3f(0.0), vec3f(0.0));
+    var losses = NO_LOSSES;
     if all(cell < vec2u(light.cells)) {
         for (var half = 0u; half < 2u; half++) {
             let sums = deposit_beam(cell, half);
@@ -94,6 +98,7 @@ fn deposit_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
             losses.missed += sums.losses.missed;
             losses.extinguished += sums.losses.extinguished;
             losses.left += sums.losses.left;
+            losses.landed += sums.losses.landed;
         }
     }
     if light.kind == POINT {

@@ -1,4 +1,4 @@
-// Estimate — how far do the maps lie from those of the light done coarsely? One invocation compares a few texels of a receiver's
+// Estimate — how far do the maps lie from those of the light done coarsely? One invocation compares a few places of a receiver's
 // map; each workgroup leaves its sums, in an order that is always the same.
 
 struct Comparison {
@@ -10,6 +10,10 @@ struct Comparison {
     first_coarse: u32,  // first texel in `coarse_irradiance`
     first_group: u32,   // first place in `differences`
     blocks: u32,        // 1: whole blocks of fine texels against coarse ones; 0: fine texels against the coarse map between its texels
+    places: u32,        // how many of those blocks or texels are looked at
+    one_in: u32,        // one in so many of them, anywhere among these
+    pad_0: u32,
+    pad_1: u32,
 }
 
 @group(0) @binding(12) var<storage, read> irradiance: array<f32>;
@@ -18,7 +22,7 @@ struct Comparison {
 @group(0) @binding(14) var<storage, read_write> differences: array<vec4f>;
 @group(0) @binding(15) var<uniform> comparison: Comparison;
 
-const PLACES_EACH: u32 = 16u;
+const PLACES_EACH: u32 = 4u;
 
 var<workgroup> sums: array<vec2f, 64>;
 
@@ -67,6 +71,14 @@ fn texel_sums(x: u32, y: u32) -> vec2f {
     return vec2f(total(abs(fine - coarse_between(x, y))), total(fine));
 }
 
+// A number without pattern for each `i`, so that what is looked at does not keep step with waves: PCG as in Jarzynski and Olano,
+// "Hash Functions for GPU Rendering", 2020.
+fn scattered(i: u32) -> u32 {
+    let state = i * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
 @compute @workgroup_size(64)
 fn estimate_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let in_blocks = comparison.blocks == 1u;
@@ -76,8 +88,9 @@ fn estimate_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
     let first = number * (64u * PLACES_EACH) + invocation;
     var held = vec2f(0.0);
     for (var i = 0u; i < PLACES_EACH; i++) {
-        let place = first + 64u * i;
-        if place >= width * height { break; }
+        let nth = first + 64u * i;
+        if nth >= comparison.places { break; }
+        let place = min(nth * comparison.one_in + scattered(nth) % comparison.one_in, width * height - 1u);
         if in_blocks { held += block_sums(place % width, place / width); } else { held += texel_sums(place % width, place / width); }
     }
     sums[invocation] = held;

@@ -68,7 +68,7 @@ fn planes_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
         taken = 0.0;
         let arriving = b.transmitted * mean_transmission(c.t);
         deposit_triangle(target_of(accepting), c.uv[0], c.uv[1], c.uv[2], arriving);
-        if ATTENUATES { note_losses(Losses(0.0, taken * b.transmitted * mean_extinction(c.t), vec3f(0.0))); }
+        if ATTENUATES { note_losses(Losses(0.0, taken * b.transmitted * mean_extinction(c.t), vec3f(0.0), vec3f(0.0))); }
     }
     workgroupBarrier();
     flush_account(invocation);

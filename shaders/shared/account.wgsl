@@ -1,6 +1,6 @@
 // The energy account of a workgroup, gathered before it goes to the global sums.
 
-var<workgroup> account: array<atomic<u32>, 9>;
+var<workgroup> account: array<atomic<u32>, 12>;
 
 // Counts finer than those of whole beams, a power of two: what notes small parts sets it before the first.
 var<private> finer: f32 = 1.0;
@@ -21,17 +21,20 @@ fn note_losses(losses: Losses) {
     note_term(TERM_MISSED, losses.missed);
     note_term(TERM_EXTINGUISHED, losses.extinguished.x);
     note_term(TERM_LEFT, losses.left.x);
+    note_term(TERM_LANDED, losses.landed.x);
     if light.channels == 3u {
         note_term(TERM_EXTINGUISHED + 1u, losses.extinguished.y);
         note_term(TERM_EXTINGUISHED + 2u, losses.extinguished.z);
         note_term(TERM_LEFT + 1u, losses.left.y);
         note_term(TERM_LEFT + 2u, losses.left.z);
+        note_term(TERM_LANDED + 1u, losses.landed.y);
+        note_term(TERM_LANDED + 2u, losses.landed.z);
     }
 }
 
 // To be called by all invocations after a workgroupBarrier().
 fn flush_account(invocation: u32) {
-    if invocation < 9u {
+    if invocation < 12u {
         let counts = atomicLoad(&account[invocation]);
         // All scales are powers of two and each half fits f32: nothing is rounded, however the beams are shared out.
         let scale = light.energy_scale / (light.triangle_scale * finer);

@@ -6,6 +6,8 @@
 
 const NO_RECEIVER: i32 = -1;
 const FLOOR: i32 = 0;
+// Where a map lies that nobody asks for: light that lands there goes straight into the account.
+const NOWHERE: u32 = 0xffffffffu;
 const EMPTY_DEPTH: f32 = 1e30;
 const MARCH_STEPS: u32 = 1024u;
 
@@ -15,14 +17,14 @@ struct Receiver {
     s_row: vec4f,
     map_width: u32,
     map_height: u32,
-    map_offset: u32,        // first texel in the flux and irradiance arrays
+    map_offset: u32,        // first texel in the flux sums; NOWHERE: nobody asks for the map
     level_map_offset: u32,  // first word of the level map in the arena
     s_min: f32,
     s_max: f32,
     level_count: u32,       // mip levels of the level map; 0 for the floor
     density_per_flux: f32,  // 1 / (area that a texel shows to the map's axis, m²)
     axis: vec4f,            // unit direction of the map's axis in local space
-    irradiance_offset: u32, // first texel in the irradiance array
+    irradiance_offset: u32, // first texel in the irradiance array; NOWHERE as above
     s_per_m: f32,           // units of s per metre along the axis
     layer: u32,             // of the level map: 0 is the nearest
     planes: u32,            // reference planes of the box; 0 where light is placed by hits

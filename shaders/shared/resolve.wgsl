@@ -28,8 +28,12 @@ fn density_at(texel: u32) -> f32 {
 }
 
 // Irradiance that texel `index` of the piece got from the light, W/m².
-fn resolved_w_m2(index: u32, channel: u32) -> f32 {
-    let carried = select(0u, channel, light.channels == 3u);
-    let counts = flux_counts(resolve.first_texel + index, carried, light.channels);
-    return counts * (density_at(resolve.first_texel + index) / light.flux_scale) * resolve.power[channel];
+fn resolved_w_m2(index: u32) -> vec3f {
+    let texel = resolve.first_texel + index;
+    var counts = vec3f(flux_counts(texel, 0u, light.channels));
+    if light.channels == 3u {
+        counts.y = flux_counts(texel, 1u, 3u);
+        counts.z = flux_counts(texel, 2u, 3u);
+    }
+    return counts * (density_at(texel) / light.flux_scale) * resolve.power.xyz;
 }

@@ -6,6 +6,7 @@ pub mod pool;
 pub mod readback;
 pub mod shader;
 pub mod timing;
+pub mod uniforms;
 
 pub use context::GpuContext;
 pub use kernel::{Binding, Kernel, RasterKernel};

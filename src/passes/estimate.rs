@@ -9,7 +9,10 @@ use crate::scene::Receiver;
 use crate::scene::facts::{FloorMap, SceneFacts};
 
 /// Places (texels or blocks of them) of a workgroup, as in the shader.
-pub const PLACES_PER_GROUP: u32 = 64 * 16;
+pub const PLACES_PER_GROUP: u32 = 64 * 4;
+/// A map of twice as many places and more is looked at in about so many, spread over it: their mean is the map's to a few hundredths,
+/// where the estimate itself is good to a factor of two.
+const ENOUGH_PLACES: u32 = 4096;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
@@ -49,14 +52,22 @@ pub(super) fn wanted(facts: &SceneFacts) -> Result<String, String> {
     wanted_for_sun(facts)
 }
 
-/// Each map that is compared, and the area of its texels, m².
+/// Each map that is compared, and the area that a texel which is looked at stands for, m².
 pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<(Comparison, f64)> {
     let mut all: Vec<(Comparison, f64)> = Vec::new();
     let mut first_group = 0;
     let mut add = |mut comparison: Comparison, texel_m2: f64| {
+        let all_places = if comparison.blocks == 1 {
+            comparison.coarse_width * comparison.coarse_height
+        } else {
+            comparison.fine_width * comparison.fine_height
+        };
+        comparison.one_in = (all_places / ENOUGH_PLACES).max(1);
+        comparison.places = all_places.div_ceil(comparison.one_in);
         comparison.first_group = first_group;
         first_group += groups_of(&comparison);
-        all.push((comparison, texel_m2));
+        let stands_for = f64::from(all_places) / f64::from(comparison.places);
+        all.push((comparison, texel_m2 * stands_for));
     };
     if let (Some(fine), Some(low)) = (facts.floor_map, coarse.floor_map) {
         let size = fine.rect.size();
@@ -105,12 +116,7 @@ pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<(Comparison, f64
 
 /// Workgroups that compare a map.
 pub fn groups_of(comparison: &Comparison) -> u32 {
-    let places = if comparison.blocks == 1 {
-        comparison.coarse_width * comparison.coarse_height
-    } else {
-        comparison.fine_width * comparison.fine_height
-    };
-    places.div_ceil(PLACES_PER_GROUP)
+    comparison.places.div_ceil(PLACES_PER_GROUP)
 }
 
 /// Workgroups of all comparisons.

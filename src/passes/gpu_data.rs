@@ -122,6 +122,10 @@ gpu_struct! {
         first_coarse: u32,
         first_group: u32,
         blocks: u32,
+        places: u32,
+        one_in: u32,
+        pad_0: u32,
+        pad_1: u32,
     }
 }
 

@@ -184,7 +184,7 @@ struct TexelFlux {
     mean: f64,
 }
 
-/// That of each receiver's map.
+/// That of each map that is asked for.
 fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelFlux> {
     let sun = &facts.suns[index];
     let even = |flux: f64| TexelFlux {
@@ -200,8 +200,14 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
             (_, None) => even(area_m2),
         }
     });
-    let objects = sun.boxes.iter().zip(&facts.objects);
-    let objects = objects.filter_map(move |(level_box, object)| {
+    let maps = MapLayout::of(facts);
+    let is_asked = move |object: usize| {
+        let layers = facts.quality.layers;
+        (0..layers).any(|layer| maps.holds(object, layer))
+    };
+    let objects = sun.boxes.iter().zip(&facts.objects).enumerate();
+    let objects = objects.filter(move |(number, _)| is_asked(*number));
+    let objects = objects.filter_map(move |(_, (level_box, object))| {
         let area_m2 = 1.0 / level_box.as_ref()?.density_per_flux;
         let Some(position_m) = sun.source.position_m() else {
             return Some(even(area_m2));

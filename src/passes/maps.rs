@@ -1,17 +1,34 @@
 //! Where the irradiance maps of the receivers lie in the arrays that hold them all.
 //!
 //! In the flux sums of a sun: the floor's map, then for each wet object its layers, nearest first. In the irradiance array: the
-//! floor's map, to which every sun adds, then the objects' maps of the first sun, of the second, and so on.
+//! floor's map, to which every sun adds, then the objects' maps of the first sun, of the second, and so on. Maps that nobody asks
+//! for have no place: what lands there goes straight into the account.
 
+use std::ops::Range;
+
+use super::light::places_by_planes;
+use crate::scene::Receiver;
 use crate::scene::facts::SceneFacts;
+
+/// Where a map lies that nobody asks for, as in `shaders/shared/receivers.wgsl`.
+pub const NOWHERE: u32 = u32::MAX;
+
+/// The maps of an object.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct ObjectMaps {
+    /// First texel in the flux sums.
+    first: u64,
+    /// Texels of a layer; of a dry object 0.
+    texels: u64,
+    /// The layers that are asked for.
+    layers: Range<u32>,
+}
 
 /// The maps of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MapLayout {
     floor: u64,
-    /// Per object: first texel in the flux sums and texels of a layer; of dry ones 0 texels.
-    objects: Vec<(u64, u64)>,
-    layers: u64,
+    objects: Vec<ObjectMaps>,
     /// Texels of all objects under one sun.
     per_sun: u64,
     suns: u64,
@@ -20,7 +37,6 @@ pub struct MapLayout {
 impl MapLayout {
     /// The layout for a scene.
     pub fn of(facts: &SceneFacts) -> Self {
-        let layers = u64::from(facts.quality.layers);
         let floor = facts
             .floor_map
             .map_or(0, |map| u64::from(map.width) * u64::from(map.height));
@@ -28,21 +44,25 @@ impl MapLayout {
         let objects = facts
             .objects
             .iter()
-            .map(|object| {
+            .enumerate()
+            .map(|(number, object)| {
                 let side = if object.wet {
                     u64::from(object.map_texels)
                 } else {
                     0
                 };
-                let first = end;
-                end += layers * side * side;
-                (first, side * side)
+                let maps = ObjectMaps {
+                    first: end,
+                    texels: side * side,
+                    layers: asked_layers(facts, number),
+                };
+                end += maps.layers.len() as u64 * maps.texels;
+                maps
             })
             .collect();
         Self {
             floor,
             objects,
-            layers,
             per_sun: end - floor,
             suns: facts.suns.len() as u64,
         }
@@ -52,7 +72,7 @@ impl MapLayout {
     pub fn scratch_texels(&self) -> u64 {
         self.objects
             .iter()
-            .map(|&(_, texels)| texels)
+            .map(|maps| maps.texels)
             .max()
             .unwrap_or(0)
     }
@@ -77,25 +97,42 @@ impl MapLayout {
         self.floor + self.per_sun * self.suns
     }
 
-    /// Texels of a layer of an object's map.
-    pub fn texels_of(&self, object: usize) -> u64 {
-        self.objects[object].1
+    /// Whether a layer of an object is asked for.
+    pub fn holds(&self, object: usize, layer: u32) -> bool {
+        self.objects[object].layers.contains(&layer)
     }
 
-    /// First texel of a layer of an object in the flux sums.
+    /// First texel of a layer of an object in the flux sums; [`NOWHERE`] for one that nobody asks for.
     pub fn flux_of(&self, object: usize, layer: u32) -> u32 {
-        let (first, texels) = self.objects[object];
-        narrow(first + u64::from(layer) * texels)
+        self.place(object, layer).map_or(NOWHERE, narrow)
     }
 
-    /// First texel of a layer of an object under sun number `sun` in the irradiance array.
+    /// First texel of a layer of an object under sun number `sun` in the irradiance array; [`NOWHERE`] for one that nobody asks for.
     pub fn irradiance_of(&self, sun: usize, object: usize, layer: u32) -> u32 {
-        let (first, texels) = self.objects[object];
-        narrow(first + sun as u64 * self.per_sun + u64::from(layer) * texels)
+        let place = self.place(object, layer);
+        place.map_or(NOWHERE, |first| narrow(first + sun as u64 * self.per_sun))
+    }
+
+    fn place(&self, object: usize, layer: u32) -> Option<u64> {
+        let maps = &self.objects[object];
+        let before = layer.wrapping_sub(maps.layers.start);
+        self.holds(object, layer)
+            .then(|| maps.first + u64::from(before) * maps.texels)
+    }
+}
+
+/// Layers of an object that are read by anyone: a camera reads all, planes light all that rays stop at, an irradiance map is one.
+fn asked_layers(facts: &SceneFacts, object: usize) -> Range<u32> {
+    match facts.map_receiver {
+        Some(Receiver::Object(wanted)) if wanted as usize == object && !places_by_planes(facts) => {
+            facts.map_layer..facts.map_layer + 1
+        }
+        Some(_) if !places_by_planes(facts) => 0..0,
+        _ => 0..facts.quality.layers,
     }
 }
 
 /// Buffers this long are refused before anything runs.
 fn narrow(texel: u64) -> u32 {
-    u32::try_from(texel).unwrap_or(u32::MAX)
+    u32::try_from(texel).unwrap_or(NOWHERE)
 }

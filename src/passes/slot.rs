@@ -307,7 +307,6 @@ impl Slot {
     /// Size for a scene, bytes. Level maps are sized by their cache.
     pub fn bytes(self, facts: &SceneFacts) -> u64 {
         let side = u64::from(facts.quality.water_cells) + 1;
-        let channels = u64::from(facts.channels());
         let cells = u64::from(facts.quality.water_cells);
         let pixels = facts.camera.map_or(0, |c| {
             u64::from(c.width) * u64::from(band_rows(c.width, c.height))
@@ -326,15 +325,7 @@ impl Slot {
                 4 * MapLayout::of(facts).scratch_texels() * (planes + 1)
             }
             Self::Combined => 4 * MapLayout::of(facts).scratch_texels(),
-            Self::Flux => {
-                let maps = MapLayout::of(facts);
-                let scratch = if facts.quality.is_volumetric() {
-                    maps.scratch_texels()
-                } else {
-                    0
-                };
-                8 * channels * (maps.flux_texels() + scratch)
-            }
+            Self::Flux => flux_bytes(facts, true),
             Self::Energy => 8 * ENERGY_TERMS,
             Self::Irradiance => 12 * MapLayout::of(facts).irradiance_texels(),
             Self::CoarseIrradiance => 12 * MapLayout::of(&facts.coarse()).irradiance_texels(),
@@ -356,6 +347,18 @@ impl Slot {
             Self::LevelMaps => 0,
         }
     }
+}
+
+/// Bytes of a sun's flux sums, and of what volumetric light adds up behind them.
+pub fn flux_bytes(facts: &SceneFacts, wide_sums: bool) -> u64 {
+    let maps = MapLayout::of(facts);
+    let scratch = if facts.quality.is_volumetric() {
+        maps.scratch_texels()
+    } else {
+        0
+    };
+    let bytes = if wide_sums { 8 } else { 4 };
+    bytes * u64::from(facts.channels()) * (maps.flux_texels() + scratch)
 }
 
 /// Words of an object's list of planes: its head, the planes, and the texels near each.

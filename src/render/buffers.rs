@@ -6,7 +6,7 @@ use super::{RenderError, Renderer, geometry, slot_name};
 use crate::passes::desc::Step;
 use crate::passes::gpu_data::{Receiver, Wave};
 use crate::passes::light;
-use crate::passes::slot::{Lifetime, SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
+use crate::passes::slot::{SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
 use crate::plan::Plan;
 use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
@@ -261,46 +261,33 @@ impl Renderer {
             .create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    pub(super) fn uniform_buffers(&self, step: &Step) -> BTreeMap<&'static str, wgpu::Buffer> {
+    pub(super) fn uniform_buffers(&mut self, step: &Step) -> BTreeMap<&'static str, wgpu::Buffer> {
         step.uniforms
             .iter()
-            .map(|(name, bytes)| {
-                let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(name),
-                    size: bytes.len() as u64,
-                    usage: wgpu::BufferUsages::UNIFORM
-                        | wgpu::BufferUsages::STORAGE
-                        | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                });
-                self.gpu.queue.write_buffer(&buffer, 0, bytes);
-                (*name, buffer)
-            })
+            .map(|(name, bytes)| (*name, self.uniforms.get(&self.gpu, name, bytes)))
             .collect()
     }
 }
 
-/// Empties sums and queues before a sun's turn.
-pub(super) fn clear_for_sun(encoder: &mut wgpu::CommandEncoder, buffers: &FrameBuffers) {
+/// Empties queues, the account, and so many bytes of the flux sums before a sun's turn.
+pub(super) fn clear_for_sun(
+    encoder: &mut wgpu::CommandEncoder,
+    buffers: &FrameBuffers,
+    flux_bytes: u64,
+) {
     for (name, buffer) in &buffers.by_name {
-        let Some(info) = Slot::by_name(name).map(Slot::info) else {
+        let Some(slot) = Slot::by_name(name) else {
             continue;
         };
-        if info.is_queue {
-            let head = if *name == slot_name(Slot::WideQueue) {
-                16
-            } else {
-                0
-            };
-            if *name == slot_name(Slot::SplitQueue) {
+        if slot.info().is_queue {
+            let head = if slot == Slot::WideQueue { 16 } else { 0 };
+            if slot == Slot::SplitQueue {
                 encoder.clear_buffer(buffer, 0, Some(4 * SPLIT_HEAD_WORDS));
             }
             encoder.copy_buffer_to_buffer(&buffers.queue_heads, head, buffer, 0, 16);
-        } else if info.lifetime == Lifetime::Sun
-            && [Slot::Flux, Slot::Energy, Slot::PlaneLists]
-                .iter()
-                .any(|slot| *name == slot_name(*slot))
-        {
+        } else if slot == Slot::Flux {
+            encoder.clear_buffer(buffer, 0, Some(flux_bytes));
+        } else if [Slot::Energy, Slot::PlaneLists].contains(&slot) {
             encoder.clear_buffer(buffer, 0, None);
         }
     }

@@ -10,6 +10,7 @@ use crate::gpu::shader::Access;
 use crate::gpu::{Binding, GpuError, Kernel, RasterKernel};
 use crate::passes::desc::{Groups, PassDesc, Run, Step, Surface, Work};
 use crate::passes::level_map::EMPTY_DEPTH;
+use crate::passes::slot::Slot;
 use crate::scene::facts::SceneFacts;
 use crate::stats::TimeStats;
 
@@ -81,13 +82,10 @@ impl Renderer {
         buffers: &FrameBuffers,
         targets: Option<&DrawTargets>,
     ) -> Result<(), GpuError> {
-        let wide_sums = matches!(
-            run,
-            Run::Sun {
-                wide_sums: true,
-                ..
-            }
-        );
+        // What has nothing to do with the sums is one kernel for both.
+        let sums = pass.reads.iter().chain(pass.writes);
+        let wide_sums = matches!(run, Run::Sun { wide_sums, .. } if wide_sums)
+            && sums.into_iter().any(|&slot| slot == Slot::Flux);
         for step in (pass.steps)(facts, run) {
             match step.work {
                 Work::Compute(groups) => self.dispatch(
@@ -166,8 +164,8 @@ impl Renderer {
             let kernel = Kernel::new(&self.gpu, &self.sources, &path, step.entry, &constants)?;
             self.kernels.insert(key, kernel);
         }
-        let kernel = &self.kernels[&key];
         let uniforms = self.uniform_buffers(step);
+        let kernel = &self.kernels[&key];
         let textures: BTreeMap<&str, wgpu::TextureView> = kernel
             .bindings()
             .iter()
@@ -248,8 +246,8 @@ impl Renderer {
             )?;
             self.raster_kernels.insert(key, kernel);
         }
-        let kernel = &self.raster_kernels[&key];
         let uniforms = self.uniform_buffers(step);
+        let kernel = &self.raster_kernels[&key];
         let group = kernel.bind(&self.gpu, |name| match (name, surface) {
             ("previous_depth", Surface::Layer(1)) => Some(Binding::Texture(&targets.front)),
             ("previous_depth", Surface::Layer(layer)) => further(targets, layer - 1, 0),

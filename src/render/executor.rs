@@ -8,6 +8,7 @@ use tokio_util::sync::CancellationToken;
 use super::buffers::{FrameBuffers, clear_for_sun};
 use super::commands::Recording;
 use super::{RenderError, Renderer, RunResult, collect, geometry, ms_since, slot_name};
+use crate::gpu::readback::Staged;
 use crate::gpu::{GpuError, readback};
 use crate::passes::desc::{PassDesc, Repeat, Run};
 use crate::passes::slot::{self, ENERGY_TERMS, Lifetime, Slot, band_rows};
@@ -166,52 +167,39 @@ impl Renderer {
         let Some(energy) = buffers.by_name.get(slot_name(Slot::Energy)) else {
             return Ok(Vec::new());
         };
-        let mut account = Vec::new();
-        let too_coarse = light::needs_wide_sums(facts, index);
-        for wide_sums in [false, true].into_iter().skip(usize::from(too_coarse)) {
+        let (sums, maps): (Vec<&'static PassDesc>, Vec<&'static PassDesc>) = passes
+            .iter()
+            .copied()
+            .partition(|pass| pass.writes.iter().all(|slot| !slot.is_map()));
+        let mut wide_sums = light::needs_wide_sums(facts, index);
+        loop {
             let run = Run::Sun { index, wide_sums };
             let started = Recording::start(time_ms);
-            if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
-                self.gpu.queue.write_buffer(
-                    buffer,
-                    0,
-                    bytemuck::cast_slice(&self.receivers(facts, index)),
-                );
-            }
-            let mut encoder = self.encoder("sun's flux");
-            clear_for_sun(&mut encoder, buffers);
-            let (sums, rest): (Vec<&'static PassDesc>, Vec<&'static PassDesc>) = passes
-                .iter()
-                .copied()
-                .partition(|pass| pass.writes.iter().all(|slot| !slot.is_map()));
-            for pass in sums {
-                self.record(&mut encoder, pass, facts, run, buffers, None)?;
-                self.submit_if_timed(pass, &mut encoder, time_ms)?;
-            }
+            let mut encoder = self.begin_sun(facts, index, wide_sums, buffers);
+            self.record_all(&mut encoder, &sums, facts, run, buffers, time_ms)?;
+            let staged = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
             self.submit(encoder, started, time_ms)?;
             let started = Instant::now();
-            account = readback::read(&self.gpu, energy, ACCOUNT_BYTES)?;
+            let account = staged.read(&self.gpu)?;
             time_ms.readback += ms_since(started);
-            if !wide_sums
-                && light::has_wrapped(facts, index, collect::missing_flux(facts, index, &account))
-            {
+            if !wide_sums && has_wrapped(facts, index, &account) {
                 self.wide_sum_reruns += 1;
+                wide_sums = true;
                 continue;
             }
             // Only sums that are known to be whole join the maps.
             let started = Recording::start(time_ms);
             let mut encoder = self.encoder("sun's maps");
-            for pass in rest {
-                self.record(&mut encoder, pass, facts, run, buffers, None)?;
-                self.submit_if_timed(pass, &mut encoder, time_ms)?;
-            }
+            self.record_all(&mut encoder, &maps, facts, run, buffers, time_ms)?;
             self.submit(encoder, started, time_ms)?;
-            break;
+            return Ok(account);
         }
-        Ok(account)
     }
 
     /// Does the light again coarsely, and returns the sums of the differences, workgroup by workgroup.
+    ///
+    /// All of it goes to the GPU without a look at anything on the way; if then an account says that narrow sums wrapped, all of it
+    /// goes once more, with wide ones there.
     fn compare(
         &mut self,
         facts: &SceneFacts,
@@ -227,31 +215,116 @@ impl Renderer {
             .copied()
             .filter(|pass| !pass.writes.contains(&Slot::Irradiance))
             .collect();
-        let gpu_before = time_ms.gpu;
+        let suns = 0..coarse.suns.len();
+        let mut wide_sums: Vec<bool> = suns
+            .map(|index| light::needs_wide_sums(&coarse, index))
+            .collect();
+        loop {
+            let accounts =
+                self.run_coarse_suns(&coarse, &wide_sums, &light, buffers, cancel, time_ms)?;
+            let started = Recording::start(time_ms);
+            let mut encoder = self.encoder("estimate");
+            for pass in estimate {
+                let run = Run::Frame { coarse: &coarse };
+                self.record(&mut encoder, pass, facts, run, buffers, None)?;
+            }
+            let differences = buffers.get(slot_name(Slot::Differences));
+            let bytes = Slot::Differences.bytes(facts);
+            let staged = readback::stage(&self.gpu, &mut encoder, differences, bytes);
+            let gpu_ms_before = time_ms.gpu;
+            self.submit(encoder, started, time_ms)?;
+            if self.timing.by_host() {
+                let name = passes::estimate::PASS.name;
+                self.timing.note(name, time_ms.gpu - gpu_ms_before);
+            }
+            let started = Instant::now();
+            let differences = staged.read(&self.gpu)?;
+            let mut have_wrapped = false;
+            for (index, (account, wide_sums)) in
+                accounts.into_iter().zip(&mut wide_sums).enumerate()
+            {
+                let account = account.read(&self.gpu)?;
+                if !*wide_sums && has_wrapped(&coarse, index, &account) {
+                    self.wide_sum_reruns += 1;
+                    *wide_sums = true;
+                    have_wrapped = true;
+                }
+            }
+            time_ms.readback += ms_since(started);
+            if !have_wrapped {
+                return Ok(differences);
+            }
+        }
+    }
+
+    /// Sends all coarse suns to the GPU, and returns their accounts, which are on their way.
+    fn run_coarse_suns(
+        &mut self,
+        coarse: &SceneFacts,
+        wide_sums: &[bool],
+        light: &[&'static PassDesc],
+        buffers: &FrameBuffers,
+        cancel: &CancellationToken,
+        time_ms: &mut TimeStats,
+    ) -> Result<Vec<Staged>, RenderError> {
         let group = passes::coarse_irradiance::PASS.name;
+        let energy = buffers.get(slot_name(Slot::Energy));
+        let started = Instant::now();
+        let mut accounts = Vec::new();
         self.timing.group(Some(group));
-        for sun in 0..coarse.suns.len() {
+        for (index, &wide_sums) in wide_sums.iter().enumerate() {
             check_cancelled(cancel)?;
-            self.run_sun(&coarse, sun, &light, buffers, time_ms)?;
+            let run = Run::Sun { index, wide_sums };
+            let mut encoder = self.begin_sun(coarse, index, wide_sums, buffers);
+            self.record_all(&mut encoder, light, coarse, run, buffers, time_ms)?;
+            let account = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
+            accounts.push(account);
+            self.gpu.queue.submit([encoder.finish()]);
         }
         self.timing.group(None);
+        time_ms.upload += ms_since(started);
         if self.timing.by_host() {
-            self.timing.note(group, time_ms.gpu - gpu_before);
+            let submitted = Instant::now();
+            self.gpu.wait()?;
+            time_ms.gpu += ms_since(submitted);
+            self.timing.note(group, ms_since(started));
         }
-        let started = Recording::start(time_ms);
-        let mut encoder = self.encoder("estimate");
-        for pass in estimate {
-            let run = Run::Frame { coarse: &coarse };
-            self.record(&mut encoder, pass, facts, run, buffers, None)?;
-            self.submit_if_timed(pass, &mut encoder, time_ms)?;
+        Ok(accounts)
+    }
+
+    /// Sets the receivers of a sun and begins its commands, with empty queues and its flux sums at zero.
+    fn begin_sun(
+        &self,
+        facts: &SceneFacts,
+        index: usize,
+        wide_sums: bool,
+        buffers: &FrameBuffers,
+    ) -> wgpu::CommandEncoder {
+        if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
+            let receivers = self.receivers(facts, index);
+            let bytes = bytemuck::cast_slice(&receivers);
+            self.gpu.queue.write_buffer(buffer, 0, bytes);
         }
-        self.submit(encoder, started, time_ms)?;
-        let started = Instant::now();
-        let bytes = Slot::Differences.bytes(facts);
-        let differences =
-            readback::read(&self.gpu, buffers.get(slot_name(Slot::Differences)), bytes)?;
-        time_ms.readback += ms_since(started);
-        Ok(differences)
+        let mut encoder = self.encoder("sun");
+        clear_for_sun(&mut encoder, buffers, slot::flux_bytes(facts, wide_sums));
+        encoder
+    }
+
+    /// Records passes one after the other; where the host times them, submits each.
+    fn record_all(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        passes: &[&'static PassDesc],
+        facts: &SceneFacts,
+        run: Run<'_>,
+        buffers: &FrameBuffers,
+        time_ms: &mut TimeStats,
+    ) -> Result<(), GpuError> {
+        for pass in passes {
+            self.record(encoder, pass, facts, run, buffers, None)?;
+            self.submit_if_timed(pass, encoder, time_ms)?;
+        }
+        Ok(())
     }
 
     #[expect(
@@ -284,10 +357,8 @@ impl Renderer {
                     sample_index: sample.index,
                 };
                 let mut encoder = self.encoder("band");
-                for pass in passes {
-                    self.record(&mut encoder, pass, facts, run, buffers, None)?;
-                    self.submit_if_timed(pass, &mut encoder, &mut result.time_ms)?;
-                }
+                let time_ms = &mut result.time_ms;
+                self.record_all(&mut encoder, passes, facts, run, buffers, time_ms)?;
                 self.submit(encoder, started, &mut result.time_ms)?;
                 let started = Instant::now();
                 let layers = plan::awaited(facts);
@@ -407,6 +478,11 @@ impl Renderer {
         }
         Ok(())
     }
+}
+
+/// Whether the account of a sun says that its narrow sums wrapped.
+fn has_wrapped(facts: &SceneFacts, index: usize, account: &[u64]) -> bool {
+    light::has_wrapped(facts, index, collect::missing_flux(facts, index, account))
 }
 
 /// One round of rays through the pixels of a band.

@@ -19,6 +19,7 @@ use crate::config::RenderConfig;
 use crate::frame::Frame;
 use crate::gpu::shader::ShaderSources;
 use crate::gpu::timing::Timing;
+use crate::gpu::uniforms::Uniforms;
 use crate::gpu::{BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
 use crate::level_map::{ArenaError, LevelMapCache};
 use crate::passes::{self, Repeat, Slot, shaders};
@@ -89,6 +90,7 @@ pub struct Renderer {
     gpu: GpuContext,
     sources: ShaderSources,
     pool: BufferPool,
+    uniforms: Uniforms,
     timing: Timing,
     kernels: BTreeMap<KernelKey, Kernel>,
     raster_kernels: BTreeMap<RasterKey, RasterKernel>,
@@ -135,6 +137,7 @@ impl Renderer {
             gpu,
             sources,
             pool: BufferPool::default(),
+            uniforms: Uniforms::default(),
             kernels: BTreeMap::new(),
             raster_kernels: BTreeMap::new(),
             slice_kernel: None,
@@ -273,6 +276,7 @@ impl Renderer {
         self.pool
             .begin_frame(self.memory_budget_bytes.saturating_sub(plan.peak_bytes));
         self.idle_polls = 0;
+        self.uniforms.begin_frame();
         self.timing.begin_frame();
         let result = self.execute(resolved, facts, plan, &missing, cancel);
         // Maps that are whole stay, also those of a frame that was cancelled after them.

@@ -28,10 +28,10 @@ impl Renderer {
                 },
             )?);
         }
+        let uniforms = self.uniform_buffers(step);
         let (Some(kernel), Some(slices)) = (&self.slice_kernel, &buffers.slices) else {
             return Ok(());
         };
-        let uniforms = self.uniform_buffers(step);
         let group = kernel.bind(&self.gpu, |name| {
             Some(Binding::Buffer(
                 uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
