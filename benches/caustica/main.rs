@@ -52,20 +52,33 @@ const QUICK: Effort = Effort {
     truth_error: 1e-2,
 };
 
+/// What is measured, unless some of these are named.
+const ROOMS: [&str; 4] = ["frames", "instances", "estimates", "service"];
+
 fn main() -> ExitCode {
     let mut quick = false;
+    let mut rooms: Vec<&str> = Vec::new();
     for argument in std::env::args().skip(1) {
         match argument.as_str() {
             "--quick" => quick = true,
             // What cargo adds.
             "--bench" => {}
             other => {
-                eprintln!("error: unknown option {other}; --quick is accepted");
-                return ExitCode::from(2);
+                let Some(room) = ROOMS.into_iter().find(|room| *room == other) else {
+                    eprintln!(
+                        "error: unknown argument {other}; --quick is accepted, and any of {}",
+                        ROOMS.join(", ")
+                    );
+                    return ExitCode::from(2);
+                };
+                rooms.push(room);
             }
         }
     }
-    match run(if quick { QUICK } else { FULL }, quick) {
+    if rooms.is_empty() {
+        rooms = ROOMS.to_vec();
+    }
+    match run(if quick { QUICK } else { FULL }, quick, &rooms) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
@@ -74,10 +87,10 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(effort: Effort, quick: bool) -> Result<(), Box<dyn Error>> {
+fn run(effort: Effort, quick: bool, rooms: &[&str]) -> Result<(), Box<dyn Error>> {
     let started = Instant::now();
     let mut report = Report::default();
-    let mut renderer = Renderer::new(&RenderConfig::default())?;
+    let renderer = Renderer::new(&RenderConfig::default())?;
     let adapter = renderer.adapter();
     report.fact("version", env!("CARGO_PKG_VERSION"));
     report.fact("adapter", &summary::adapter(&adapter));
@@ -85,24 +98,32 @@ fn run(effort: Effort, quick: bool) -> Result<(), Box<dyn Error>> {
     report.fact("cores", &cores());
     report.fact("form", if quick { "quick" } else { "full" });
 
-    let sines = frames::sine_pool(&mut renderer, effort)?;
+    drop(renderer);
+    let mut stages = Vec::new();
     // A renderer of its own for each scene, so that no memory of the one counts for the other.
-    drop(renderer);
-    let pool = frames::teapot_pool(&mut Renderer::new(&RenderConfig::default())?, effort)?;
-    report.tables.push(sines.table);
-    report.tables.push(pool.table);
-    report.tables.push(instances::instances(effort)?);
-    let mut renderer = Renderer::new(&RenderConfig::default())?;
-    report
-        .tables
-        .push(accuracy::estimates(&mut renderer, effort)?);
-    drop(renderer);
-    report.tables.push(files::encoding(&pool.frame, effort)?);
-    drop(pool.frame);
-    let service = service::requests(effort)?;
-    report.tables.push(service.table);
-    let stages = [sines.memory, pool.memory, vec![service.memory]].concat();
-    report.tables.push(memory::table(&stages));
+    let new_renderer = || Renderer::new(&RenderConfig::default());
+    if rooms.contains(&"frames") {
+        let sines = frames::sine_pool(&mut new_renderer()?, effort)?;
+        let pool = frames::teapot_pool(&mut new_renderer()?, effort)?;
+        report.tables.extend([sines.table, pool.table]);
+        report.tables.push(files::encoding(&pool.frame, effort)?);
+        stages.extend(sines.memory.into_iter().chain(pool.memory));
+    }
+    if rooms.contains(&"instances") {
+        report.tables.push(instances::instances(effort)?);
+    }
+    if rooms.contains(&"estimates") {
+        let table = accuracy::estimates(&mut new_renderer()?, effort)?;
+        report.tables.push(table);
+    }
+    if rooms.contains(&"service") {
+        let service = service::requests(effort)?;
+        report.tables.push(service.table);
+        stages.push(service.memory);
+    }
+    if !stages.is_empty() {
+        report.tables.push(memory::table(&stages));
+    }
 
     report.fact("took", &format!("{:.0} s", started.elapsed().as_secs_f64()));
     println!("{}", report.markdown());

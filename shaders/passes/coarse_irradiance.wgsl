@@ -1,21 +1,62 @@
-// Coarse irradiance — as the irradiance pass, for the light that is done again coarsely. One invocation per texel.
+// Coarse irradiance — what the light that is done again coarsely leaves at the places where the estimate looks. One invocation per
+// few places.
 #import "lib/attenuation.wgsl"
 #import "shared/light.wgsl"
 #import "shared/flux.wgsl"
 #import "shared/receivers.wgsl"
 #import "shared/floor_distance.wgsl"
-#import "shared/resolve.wgsl"
+#import "shared/comparison.wgsl"
 
+struct CoarseLight {
+    power: vec4f,          // as of `Resolve`
+    first_group: u32,      // of the places that this light reaches
+    group_count: u32,
+    comparison_count: u32, // of all lights
+    adds: u32,             // 1: add to what is there
+}
+
+// Linear RGB per place, as the irradiance pass has it per texel.
 @group(0) @binding(12) var<storage, read_write> coarse_irradiance: array<f32>;
+@group(0) @binding(13) var<uniform> coarse_light: CoarseLight;
+
+fn coarse_at(c: Comparison, at: vec2u) -> vec3f {
+    return flux_colour(c.first_coarse + at.y * c.coarse_width + at.x, light.channels);
+}
+
+// The coarse map between its texels' centres, as a camera looks it up, at the middle of a fine texel.
+fn coarse_between(c: Comparison, at: vec2u) -> vec3f {
+    let size = vec2f(f32(c.coarse_width), f32(c.coarse_height));
+    let per_fine = size / vec2f(f32(c.fine_width), f32(c.fine_height));
+    let q = clamp((vec2f(at) + 0.5) * per_fine - 0.5, vec2f(0.0), size - 1.0);
+    let low = vec2u(floor(q));
+    let high = min(low + 1u, vec2u(c.coarse_width - 1u, c.coarse_height - 1u));
+    let f = q - floor(q);
+    let near = mix(coarse_at(c, low), coarse_at(c, vec2u(high.x, low.y)), f.x);
+    let far = mix(coarse_at(c, vec2u(low.x, high.y)), coarse_at(c, high), f.x);
+    return mix(near, far, f.y);
+}
 
 @compute @workgroup_size(64)
 fn coarse_irradiance_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
-    let index = (group.y * groups.x + group.x) * 64u + invocation;
-    if index >= resolve.texel_count { return; }
-    let resolved = resolved_w_m2(index);
-    for (var channel = 0u; channel < 3u; channel++) {
-        let value = resolved[channel];
-        let at = 3u * (resolve.first_output + index) + channel;
-        if resolve.adds == 1u { coarse_irradiance[at] += value; } else { coarse_irradiance[at] = value; }
+    let nth_group = group.y * groups.x + group.x;
+    if nth_group >= coarse_light.group_count { return; }
+    let number = coarse_light.first_group + nth_group;
+    let c = comparison_of(number, coarse_light.comparison_count);
+    let per_count = receivers[c.receiver].density_per_flux / light.flux_scale * coarse_light.power.xyz;
+    for (var i = 0u; i < PLACES_EACH; i++) {
+        let nth = rank_of(number - c.first_group, i, invocation);
+        if nth >= c.places { break; }
+        let at = place_of(c, nth);
+        var counts: vec3f;
+        if c.blocks == 1u { counts = coarse_at(c, at); } else { counts = coarse_between(c, at); }
+        let value = counts * per_count;
+        let first = 3u * rank_of(number, i, invocation);
+        for (var channel = 0u; channel < 3u; channel++) {
+            if coarse_light.adds == 1u {
+                coarse_irradiance[first + channel] += value[channel];
+            } else {
+                coarse_irradiance[first + channel] = value[channel];
+            }
+        }
     }
 }

@@ -46,6 +46,16 @@ fn flux_counts(texel: u32, channel: u32, channels: u32) -> f32 {
     return f32(words.y) * 4294967296.0 + f32(words.x);
 }
 
+// The counts of a texel's three channels, which may be one.
+fn flux_colour(texel: u32, channels: u32) -> vec3f {
+    var counts = vec3f(flux_counts(texel, 0u, channels));
+    if channels == 3u {
+        counts.y = flux_counts(texel, 1u, 3u);
+        counts.z = flux_counts(texel, 2u, 3u);
+    }
+    return counts;
+}
+
 // Adds `counts` (0 … 2⁶²) to a term.
 fn add_energy(term: u32, counts: f32) {
     let high = u32(floor(counts / 4294967296.0));

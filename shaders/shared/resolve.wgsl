@@ -30,10 +30,5 @@ fn density_at(texel: u32) -> f32 {
 // Irradiance that texel `index` of the piece got from the light, W/m².
 fn resolved_w_m2(index: u32) -> vec3f {
     let texel = resolve.first_texel + index;
-    var counts = vec3f(flux_counts(texel, 0u, light.channels));
-    if light.channels == 3u {
-        counts.y = flux_counts(texel, 1u, 3u);
-        counts.z = flux_counts(texel, 2u, 3u);
-    }
-    return counts * (density_at(texel) / light.flux_scale) * resolve.power.xyz;
+    return flux_colour(texel, light.channels) * (density_at(texel) / light.flux_scale) * resolve.power.xyz;
 }

@@ -1,15 +1,17 @@
-//! Coarse irradiance — finishes a sun's maps when its light is done again with two fifths of the water cells.
+//! Coarse irradiance — what the light that is done again with two fifths of the water cells leaves at the places where the estimate
+//! looks: coarse maps are never made whole.
 
-use super::desc::{PassDesc, Repeat};
-use super::estimate;
-use super::irradiance::resolve_steps;
-use super::slot::Slot;
+use super::desc::{PassDesc, Repeat, Run, Step, Work};
+use super::estimate::{self, Compared};
+use super::gpu_data::{CoarseLight, vec4};
+use super::light::light_uniform;
+use super::slot::{self, Slot};
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "coarse_irradiance",
     repeat: Repeat::CoarseSun,
-    reads: &[Slot::Flux, Slot::Energy, Slot::Receivers],
+    reads: &[Slot::Comparisons, Slot::Flux, Slot::Energy, Slot::Receivers],
     reads_if_present: &[],
     writes: &[Slot::CoarseIrradiance],
     wanted: |facts| {
@@ -19,5 +21,45 @@ pub const PASS: PassDesc = PassDesc {
             facts.coarse().quality.water_cells
         ))
     },
-    steps: |facts, run| resolve_steps("coarse_irradiance_main", facts, run),
+    steps: |facts, run| {
+        let Run::CoarseSun {
+            index,
+            wide_sums,
+            fine,
+        } = run
+        else {
+            return Vec::new();
+        };
+        let compared = estimate::compared(fine, facts);
+        let floors: Vec<Compared> = (compared.iter().copied())
+            .filter(|c| c.light.is_none())
+            .collect();
+        let own: Vec<Compared> = (compared.iter().copied())
+            .filter(|c| c.light == Some(index))
+            .collect();
+        let light = light_uniform(facts, index, wide_sums);
+        let pieces = [(floors, index > 0), (own, false)];
+        let wanted = pieces.iter().filter(|(piece, _)| !piece.is_empty());
+        wanted
+            .map(|(piece, adds)| {
+                let first_group = piece[0].comparison.first_group;
+                let group_count = estimate::groups_of(piece) - first_group;
+                let coarse_light = CoarseLight {
+                    power: vec4(facts.suns[index].power, 0.0),
+                    first_group,
+                    group_count,
+                    comparison_count: compared.len() as u32,
+                    adds: u32::from(*adds),
+                };
+                Step {
+                    entry: "coarse_irradiance_main",
+                    work: Work::Compute(slot::in_columns(group_count)),
+                    uniforms: vec![
+                        ("light", light.clone()),
+                        ("coarse_light", bytemuck::bytes_of(&coarse_light).to_vec()),
+                    ],
+                }
+            })
+            .collect()
+    },
 };

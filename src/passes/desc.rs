@@ -41,6 +41,15 @@ pub enum Run<'a> {
         /// With 64-bit flux sums, after narrow ones have wrapped.
         wide_sums: bool,
     },
+    /// Take what a sun's coarse light left; the facts are the coarse ones.
+    CoarseSun {
+        /// Which one.
+        index: usize,
+        /// As of [`Run::Sun`].
+        wide_sums: bool,
+        /// The scene whose maps are compared with.
+        fine: &'a SceneFacts,
+    },
     /// Look at the finished maps, beside the coarse ones of these facts.
     Frame {
         /// The scene with coarser water and maps.

@@ -1,7 +1,7 @@
 //! Estimate — compares the maps with those of the light done coarsely: the frame's own estimate of its error.
 
-use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
-use super::gpu_data::Comparison;
+use super::desc::{PassDesc, Repeat, Run, Step, Work};
+use super::gpu_data::{Comparison, Estimate};
 use super::maps::MapLayout;
 use super::slot::{self, Slot};
 use super::surface::wanted_for_sun;
@@ -9,16 +9,16 @@ use crate::scene::Receiver;
 use crate::scene::facts::{FloorMap, SceneFacts};
 
 /// Places (texels or blocks of them) of a workgroup, as in the shader.
-pub const PLACES_PER_GROUP: u32 = 64 * 4;
+pub const PLACES_PER_GROUP: u32 = 64 * 2;
 /// A map of twice as many places and more is looked at in about so many, spread over it: their mean is the map's to a few hundredths,
 /// where the estimate itself is good to a factor of two.
-const ENOUGH_PLACES: u32 = 4096;
+const ENOUGH_PLACES: u32 = 2048;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "estimate",
     repeat: Repeat::Frame,
-    reads: &[Slot::Irradiance, Slot::CoarseIrradiance],
+    reads: &[Slot::Comparisons, Slot::Irradiance, Slot::CoarseIrradiance],
     reads_if_present: &[],
     writes: &[Slot::Differences],
     wanted: |facts| {
@@ -29,18 +29,18 @@ pub const PASS: PassDesc = PassDesc {
         let Run::Frame { coarse } = run else {
             return Vec::new();
         };
-        compared(facts, coarse)
-            .into_iter()
-            .map(|(comparison, _)| {
-                let groups = groups_of(&comparison);
-                let columns = groups.min(slot::MOST_GROUPS);
-                Step {
-                    entry: "estimate_main",
-                    work: Work::Compute(Groups::Direct([columns, groups.div_ceil(columns), 1])),
-                    uniforms: vec![("comparison", bytemuck::bytes_of(&comparison).to_vec())],
-                }
-            })
-            .collect()
+        let compared = compared(facts, coarse);
+        let group_count = groups_of(&compared);
+        let estimate = Estimate {
+            comparison_count: compared.len() as u32,
+            group_count,
+            ..Estimate::default()
+        };
+        vec![Step {
+            entry: "estimate_main",
+            work: Work::Compute(slot::in_columns(group_count)),
+            uniforms: vec![("estimate", bytemuck::bytes_of(&estimate).to_vec())],
+        }]
     },
 };
 
@@ -52,11 +52,28 @@ pub(super) fn wanted(facts: &SceneFacts) -> Result<String, String> {
     wanted_for_sun(facts)
 }
 
-/// Each map that is compared, and the area that a texel which is looked at stands for, m².
-pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<(Comparison, f64)> {
-    let mut all: Vec<(Comparison, f64)> = Vec::new();
-    let mut first_group = 0;
-    let mut add = |mut comparison: Comparison, texel_m2: f64| {
+/// A map that is compared.
+#[derive(Clone, Copy, Debug)]
+pub struct Compared {
+    /// What the shaders need of it.
+    pub comparison: Comparison,
+    /// Area that a fine texel which is looked at stands for, m².
+    pub texel_m2: f64,
+    /// The light it is of; `None` of the floor's, to which every light adds.
+    pub light: Option<usize>,
+}
+
+impl Compared {
+    /// Workgroups that compare it.
+    pub fn groups(&self) -> u32 {
+        self.comparison.places.div_ceil(PLACES_PER_GROUP)
+    }
+}
+
+/// All maps that are compared: the floor's, then those of the first light, of the second, and so on.
+pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<Compared> {
+    let mut all: Vec<Compared> = Vec::new();
+    let mut add = |mut comparison: Comparison, texel_m2: f64, light: Option<usize>| {
         let all_places = if comparison.blocks == 1 {
             comparison.coarse_width * comparison.coarse_height
         } else {
@@ -64,10 +81,13 @@ pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<(Comparison, f64
         };
         comparison.one_in = (all_places / ENOUGH_PLACES).max(1);
         comparison.places = all_places.div_ceil(comparison.one_in);
-        comparison.first_group = first_group;
-        first_group += groups_of(&comparison);
+        comparison.first_group = groups_of(&all);
         let stands_for = f64::from(all_places) / f64::from(comparison.places);
-        all.push((comparison, texel_m2 * stands_for));
+        all.push(Compared {
+            comparison,
+            texel_m2: texel_m2 * stands_for,
+            light,
+        });
     };
     if let (Some(fine), Some(low)) = (facts.floor_map, coarse.floor_map) {
         let size = fine.rect.size();
@@ -79,52 +99,48 @@ pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<(Comparison, f64
             blocks: u32::from(facts.camera.is_none()),
             ..Comparison::default()
         };
-        add(
-            comparison,
-            size.x * size.y / (f64::from(fine.width) * f64::from(fine.height)),
-        );
+        let texel_m2 = size.x * size.y / (f64::from(fine.width) * f64::from(fine.height));
+        add(comparison, texel_m2, None);
     }
     let (fine, low) = (MapLayout::of(facts), MapLayout::of(coarse));
+    let layers = facts.quality.layers;
     for (index, sun) in facts.suns.iter().enumerate() {
         for (object, level_box) in sun.boxes.iter().enumerate() {
             let Some(level_box) = level_box else { continue };
             let side = level_box.key.texels;
-            let counts = match facts.map_receiver {
-                None => true,
-                Some(Receiver::Object(wanted)) => wanted as usize == object,
-                Some(Receiver::Floor(_)) => false,
-            };
-            let is_asked_for =
-                |layer: &u32| facts.map_receiver.is_none() || *layer == facts.map_layer;
-            for layer in (0..facts.quality.layers).filter(|layer| counts && is_asked_for(layer)) {
+            for layer in (0..layers).filter(|layer| is_asked_for(facts, object, *layer)) {
                 let comparison = Comparison {
                     fine_width: side,
                     fine_height: side,
                     coarse_width: side,
                     coarse_height: side,
                     first_fine: fine.irradiance_of(index, object, layer),
-                    first_coarse: low.irradiance_of(index, object, layer),
+                    first_coarse: low.flux_of(object, layer),
+                    receiver: 1 + object as u32 * layers + layer,
                     blocks: 1,
                     ..Comparison::default()
                 };
-                add(comparison, 1.0 / level_box.density_per_flux);
+                add(comparison, 1.0 / level_box.density_per_flux, Some(index));
             }
         }
     }
     all
 }
 
-/// Workgroups that compare a map.
-pub fn groups_of(comparison: &Comparison) -> u32 {
-    comparison.places.div_ceil(PLACES_PER_GROUP)
+/// Whether a map of an object is of what the output shows.
+fn is_asked_for(facts: &SceneFacts, object: usize, layer: u32) -> bool {
+    match facts.map_receiver {
+        None => true,
+        Some(Receiver::Object(wanted)) => wanted as usize == object && layer == facts.map_layer,
+        Some(Receiver::Floor(_)) => false,
+    }
 }
 
 /// Workgroups of all comparisons.
-pub fn groups(facts: &SceneFacts) -> u32 {
-    compared(facts, &facts.coarse())
-        .iter()
-        .map(|(comparison, _)| groups_of(comparison))
-        .sum()
+pub fn groups_of(compared: &[Compared]) -> u32 {
+    compared
+        .last()
+        .map_or(0, |last| last.comparison.first_group + last.groups())
 }
 
 impl SceneFacts {

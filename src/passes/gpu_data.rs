@@ -111,7 +111,7 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// The uniform of `shaders/passes/estimate.wgsl`; fields are documented there.
+    /// A comparison of `shaders/shared/comparison.wgsl`; fields are documented there.
     #[expect(missing_docs, reason = "documented in the WGSL twin")]
     Comparison = "Comparison" {
         fine_width: u32,
@@ -120,10 +120,33 @@ gpu_struct! {
         coarse_height: u32,
         first_fine: u32,
         first_coarse: u32,
-        first_group: u32,
+        receiver: u32,
         blocks: u32,
+        first_group: u32,
         places: u32,
         one_in: u32,
+        pad: u32,
+    }
+}
+
+gpu_struct! {
+    /// The uniform of `shaders/passes/coarse_irradiance.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    CoarseLight = "CoarseLight" {
+        power: [f32; 4],
+        first_group: u32,
+        group_count: u32,
+        comparison_count: u32,
+        adds: u32,
+    }
+}
+
+gpu_struct! {
+    /// The uniform of `shaders/passes/estimate.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    Estimate = "Estimate" {
+        comparison_count: u32,
+        group_count: u32,
         pad_0: u32,
         pad_1: u32,
     }
@@ -238,13 +261,15 @@ gpu_struct! {
 pub type Layout = (&'static str, usize, &'static [(&'static str, usize)]);
 
 /// Layouts of all shared structs.
-pub const LAYOUTS: [Layout; 12] = [
+pub const LAYOUTS: [Layout; 14] = [
     Light::LAYOUT,
     Split::LAYOUT,
     Receiver::LAYOUT,
     Planes::LAYOUT,
     Wave::LAYOUT,
     Comparison::LAYOUT,
+    CoarseLight::LAYOUT,
+    Estimate::LAYOUT,
     Resolve::LAYOUT,
     Span::LAYOUT,
     View::LAYOUT,

@@ -1,6 +1,6 @@
 //! Irradiance — turns a sun's flux sums into W/m², and adds them to the floor's map.
 
-use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
+use super::desc::{PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::{Resolve, vec4};
 use super::light::{light_uniform, receivers};
 use super::maps::MapLayout;
@@ -28,7 +28,7 @@ pub const PASS: PassDesc = PassDesc {
         parts.extend(object_maps(facts));
         Ok(parts.join(" and "))
     },
-    steps: |facts, run| resolve_steps("irradiance_main", facts, run),
+    steps: resolve_steps,
 };
 
 /// How many maps of objects there are, and how large.
@@ -98,7 +98,7 @@ fn pieces(facts: &SceneFacts, index: usize) -> Vec<Piece> {
 }
 
 /// One dispatch per piece of a sun's flux sums that is asked for.
-pub(super) fn resolve_steps(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
+fn resolve_steps(facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
     let Run::Sun { index, wide_sums } = run else {
         return Vec::new();
     };
@@ -116,10 +116,9 @@ pub(super) fn resolve_steps(entry: &'static str, facts: &SceneFacts, run: Run<'_
             ..Resolve::default()
         };
         let groups = piece.texels.div_ceil(64);
-        let columns = groups.min(slot::MOST_GROUPS);
         steps.push(Step {
-            entry,
-            work: Work::Compute(Groups::Direct([columns, groups.div_ceil(columns), 1])),
+            entry: "irradiance_main",
+            work: Work::Compute(slot::in_columns(groups)),
             uniforms: vec![
                 ("light", light_uniform(facts, index, wide_sums)),
                 ("resolve", bytemuck::bytes_of(&resolve).to_vec()),

@@ -40,6 +40,7 @@ pub fn embedded() -> ShaderSources {
         "passes/volumetric.wgsl",
         "shared/account.wgsl",
         "shared/beam_triangle.wgsl",
+        "shared/comparison.wgsl",
         "shared/cull.wgsl",
         "shared/deposit_share.wgsl",
         "shared/entry.wgsl",

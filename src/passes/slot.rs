@@ -1,5 +1,7 @@
 //! What flows between the passes: the one table of buffers, with what they hold, in which unit, and how large they are.
 
+use super::desc::Groups;
+use super::estimate;
 use super::maps::MapLayout;
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
@@ -88,7 +90,9 @@ pub enum Slot {
     Energy,
     /// Irradiance maps.
     Irradiance,
-    /// Irradiance maps of the light done coarsely.
+    /// The maps that are compared with those of the light done coarsely.
+    Comparisons,
+    /// Irradiance of the light done coarsely.
     CoarseIrradiance,
     /// How far those are from the maps.
     Differences,
@@ -120,7 +124,7 @@ pub struct SlotInfo {
 }
 
 /// All slots.
-pub const SLOTS: [Slot; 27] = [
+pub const SLOTS: [Slot; 28] = [
     Slot::Waves,
     Slot::Geometry,
     Slot::Instances,
@@ -140,6 +144,7 @@ pub const SLOTS: [Slot; 27] = [
     Slot::Flux,
     Slot::Energy,
     Slot::Irradiance,
+    Slot::Comparisons,
     Slot::CoarseIrradiance,
     Slot::Differences,
     Slot::VisiblePosition,
@@ -245,9 +250,14 @@ impl Slot {
                 Lifetime::Sun,
             ),
             Self::Irradiance => ("irradiance", "linear RGB per texel, W/m²", Lifetime::Frame),
+            Self::Comparisons => (
+                "comparisons",
+                "where the maps lie that are compared, and at how many places",
+                Lifetime::Upload,
+            ),
             Self::CoarseIrradiance => (
                 "coarse_irradiance",
-                "linear RGB per texel of the light done coarsely, W/m²",
+                "linear RGB of the light done coarsely per place that is compared, W/m²",
                 Lifetime::Frame,
             ),
             Self::Differences => (
@@ -328,8 +338,17 @@ impl Slot {
             Self::Flux => flux_bytes(facts, true),
             Self::Energy => 8 * ENERGY_TERMS,
             Self::Irradiance => 12 * MapLayout::of(facts).irradiance_texels(),
-            Self::CoarseIrradiance => 12 * MapLayout::of(&facts.coarse()).irradiance_texels(),
-            Self::Differences => 16 * u64::from(super::estimate::groups(facts)),
+            Self::Comparisons | Self::CoarseIrradiance | Self::Differences => {
+                let compared = estimate::compared(facts, &facts.coarse());
+                let groups = u64::from(estimate::groups_of(&compared));
+                match self {
+                    Self::Comparisons => {
+                        (size_of::<super::gpu_data::Comparison>() * compared.len().max(1)) as u64
+                    }
+                    Self::CoarseIrradiance => 12 * u64::from(estimate::PLACES_PER_GROUP) * groups,
+                    _ => 16 * groups,
+                }
+            }
             Self::VisiblePosition
             | Self::VisibleNormal
             | Self::VisibleAlbedo
@@ -403,6 +422,12 @@ pub fn split_parts(facts: &SceneFacts) -> u32 {
 fn receiver_bytes(facts: &SceneFacts) -> u64 {
     let receivers = 1 + facts.objects.len() as u64 * u64::from(facts.quality.layers);
     size_of::<super::gpu_data::Receiver>() as u64 * receivers
+}
+
+/// A dispatch of so many workgroups in a row, which may be more than fit one axis; shaders pass over the last ones.
+pub fn in_columns(groups: u32) -> Groups {
+    let columns = groups.clamp(1, MOST_GROUPS);
+    Groups::Direct([columns, groups.div_ceil(columns), 1])
 }
 
 /// Rows of a picture that are made at once.

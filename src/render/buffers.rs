@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::{RenderError, Renderer, geometry, slot_name};
 use crate::passes::desc::Step;
-use crate::passes::gpu_data::{Receiver, Wave};
-use crate::passes::light;
+use crate::passes::gpu_data::{Comparison, Receiver, Wave};
 use crate::passes::slot::{SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
+use crate::passes::{estimate, light};
 use crate::plan::Plan;
 use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
@@ -163,6 +163,11 @@ impl Renderer {
             .flat_map(|sun| self.receivers(facts, sun))
             .collect();
         write(Slot::AllReceivers, bytemuck::cast_slice(&all));
+        if buffers.by_name.contains_key(slot_name(Slot::Comparisons)) {
+            let compared = estimate::compared(facts, &facts.coarse());
+            let all: Vec<Comparison> = compared.iter().map(|map| map.comparison).collect();
+            write(Slot::Comparisons, bytemuck::cast_slice(&all));
+        }
     }
 
     pub(super) fn receivers(&self, facts: &SceneFacts, sun: usize) -> Vec<Receiver> {

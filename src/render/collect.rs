@@ -280,12 +280,11 @@ fn check_finite(name: LayerName, layer: &Layer, width: u32) -> Result<(), Render
 pub(super) fn estimated_error(facts: &SceneFacts, differences: &[[f32; 4]]) -> Option<f64> {
     let coarse = facts.coarse();
     let (mut difference_w, mut landed_w) = (0.0, 0.0);
-    for (comparison, texel_m2) in estimate::compared(facts, &coarse) {
-        let first = comparison.first_group as usize;
-        let groups = estimate::groups_of(&comparison) as usize;
-        for sums in &differences[first..first + groups] {
-            difference_w += f64::from(sums[0]) * texel_m2;
-            landed_w += f64::from(sums[1]) * texel_m2;
+    for map in estimate::compared(facts, &coarse) {
+        let first = map.comparison.first_group as usize;
+        for sums in &differences[first..first + map.groups() as usize] {
+            difference_w += f64::from(sums[0]) * map.texel_m2;
+            landed_w += f64::from(sums[1]) * map.texel_m2;
         }
     }
     (landed_w > 0.0).then(|| {

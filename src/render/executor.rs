@@ -112,9 +112,8 @@ impl Renderer {
         let accuracy = if estimate.is_empty() {
             None
         } else {
-            let light = [of(Repeat::Sun), of(Repeat::CoarseSun)].concat();
-            let differences =
-                self.compare(facts, &light, &estimate, buffers, cancel, &mut time_ms)?;
+            let passes = [of(Repeat::Sun), of(Repeat::CoarseSun), estimate];
+            let differences = self.compare(facts, &passes, buffers, cancel, &mut time_ms)?;
             Some(AccuracyStats {
                 estimated_error: collect::estimated_error(facts, &differences),
                 chosen: None,
@@ -203,14 +202,13 @@ impl Renderer {
     fn compare(
         &mut self,
         facts: &SceneFacts,
-        light: &[&'static PassDesc],
-        estimate: &[&'static PassDesc],
+        [light, coarse_light, estimate]: &[Vec<&'static PassDesc>; 3],
         buffers: &FrameBuffers,
         cancel: &CancellationToken,
         time_ms: &mut TimeStats,
     ) -> Result<Vec<[f32; 4]>, RenderError> {
         let coarse = facts.coarse();
-        let light: Vec<&'static PassDesc> = light
+        let sums: Vec<&'static PassDesc> = light
             .iter()
             .copied()
             .filter(|pass| !pass.writes.contains(&Slot::Irradiance))
@@ -220,8 +218,14 @@ impl Renderer {
             .map(|index| light::needs_wide_sums(&coarse, index))
             .collect();
         loop {
-            let accounts =
-                self.run_coarse_suns(&coarse, &wide_sums, &light, buffers, cancel, time_ms)?;
+            let accounts = self.run_coarse_suns(
+                (&coarse, facts),
+                &wide_sums,
+                (&sums, coarse_light),
+                buffers,
+                cancel,
+                time_ms,
+            )?;
             let started = Recording::start(time_ms);
             let mut encoder = self.encoder("estimate");
             for pass in estimate {
@@ -260,9 +264,9 @@ impl Renderer {
     /// Sends all coarse suns to the GPU, and returns their accounts, which are on their way.
     fn run_coarse_suns(
         &mut self,
-        coarse: &SceneFacts,
+        (coarse, fine): (&SceneFacts, &SceneFacts),
         wide_sums: &[bool],
-        light: &[&'static PassDesc],
+        (sums, maps): (&[&'static PassDesc], &[&'static PassDesc]),
         buffers: &FrameBuffers,
         cancel: &CancellationToken,
         time_ms: &mut TimeStats,
@@ -276,7 +280,13 @@ impl Renderer {
             check_cancelled(cancel)?;
             let run = Run::Sun { index, wide_sums };
             let mut encoder = self.begin_sun(coarse, index, wide_sums, buffers);
-            self.record_all(&mut encoder, light, coarse, run, buffers, time_ms)?;
+            self.record_all(&mut encoder, sums, coarse, run, buffers, time_ms)?;
+            let run = Run::CoarseSun {
+                index,
+                wide_sums,
+                fine,
+            };
+            self.record_all(&mut encoder, maps, coarse, run, buffers, time_ms)?;
             let account = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
             accounts.push(account);
             self.gpu.queue.submit([encoder.finish()]);

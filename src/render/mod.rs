@@ -373,7 +373,7 @@ impl Renderer {
 
 /// What would make a buffer smaller, where it holds maps of many objects.
 fn what_helps(plan: &Plan, slot: &str) -> &'static str {
-    let holds_maps = ["flux", "irradiance", "coarse_irradiance"].contains(&slot);
+    let holds_maps = ["flux", "irradiance"].contains(&slot);
     let has_objects = plan.passes.iter().any(|pass| pass.name == "split");
     if holds_maps && has_objects {
         "; quality.level_of_detail gives small and far objects smaller maps, fewer quality.level_map_texels or quality.layers all of them"

@@ -273,9 +273,14 @@ fn every_entry_point_is_run_by_a_step() {
                 first_triangle: 0,
                 triangles: 12,
             },
-            Repeat::Sun | Repeat::CoarseSun => Run::Sun {
+            Repeat::Sun => Run::Sun {
                 index: 0,
                 wide_sums: false,
+            },
+            Repeat::CoarseSun => Run::CoarseSun {
+                index: 0,
+                wide_sums: false,
+                fine: &facts,
             },
             Repeat::Frame => Run::Frame { coarse: &coarse },
             Repeat::Band => Run::Band {
