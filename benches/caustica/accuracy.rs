@@ -26,13 +26,14 @@ pub(crate) fn estimates(renderer: &mut Renderer, effort: Effort) -> Result<Table
         ("sine_pool", 1024),
         ("low_sun", 512),
         ("teapot_floor", 512),
+        ("reef", 256),
         ("pool", 512),
         ("teapot_pool", 1024),
     ];
     for (name, cells) in cases {
         eprintln!("estimates, {name}, {cells} water cells …");
         let path = format!("scenes/{name}.json");
-        let plain = scene(&path, &[("/quality/water_cells", cells)])?;
+        let plain = scene(&path, &[("/quality/water_cells", &cells.to_string())])?;
         let mut estimating = plain.clone();
         estimating.scene.quality.estimate_error = true;
         let (mut without, mut with) = (Vec::new(), Vec::new());

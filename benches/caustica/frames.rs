@@ -48,7 +48,7 @@ pub(crate) fn sine_pool(
     let mut frames = Vec::new();
     for cells in [64, 128, 256, 512, 1024] {
         eprintln!("sine pool, {cells} water cells …");
-        let scene = scene(SINE_POOL, &[("/quality/water_cells", cells)])?;
+        let scene = scene(SINE_POOL, &[("/quality/water_cells", &cells.to_string())])?;
         begin_stage();
         // The first one builds what is kept between frames.
         frames.push(render(renderer, &scene)?);
@@ -104,9 +104,9 @@ pub(crate) fn teapot_pool(
     for (width, height) in [(512, 512), (1920, 1080)] {
         eprintln!("teapot pool, {width} × {height} …");
         let changes = [
-            ("/output/width", width),
-            ("/output/height", height),
-            ("/quality/pixel_samples", 1),
+            ("/output/width", &*width.to_string()),
+            ("/output/height", &*height.to_string()),
+            ("/quality/pixel_samples", "1"),
         ];
         let scene = scene(TEAPOT_POOL, &changes)?;
         let name = |state: &str| {
@@ -159,14 +159,11 @@ pub(crate) fn teapot_pool(
     })
 }
 
-/// A scene file with some whole numbers replaced.
-pub(crate) fn scene(
-    path: &str,
-    changes: &[(&str, usize)],
-) -> Result<ResolvedScene, Box<dyn Error>> {
+/// A scene file with some values replaced, as JSON.
+pub(crate) fn scene(path: &str, changes: &[(&str, &str)]) -> Result<ResolvedScene, Box<dyn Error>> {
     let changes = changes
         .iter()
-        .map(|(pointer, value)| ((*pointer).to_owned(), value.to_string()));
+        .map(|(pointer, value)| ((*pointer).to_owned(), (*value).to_owned()));
     let args = SceneArgs {
         scene: path.into(),
         overrides: SceneOverrides(changes.collect()),

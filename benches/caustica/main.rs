@@ -3,7 +3,7 @@
 //! `cargo bench --bench caustica -- --quick` is the short form. Every figure is the median of several warm runs with the
 //! smallest and the largest beside it, since other work on the machine shows first in the largest.
 //!
-//! `frames` measures rendering, `instances` many objects, `accuracy` what a frame's estimate of its error costs, `files` encoding,
+//! `frames` measures rendering, `instances` many objects, `savings` what is left out or kept, `accuracy` what a frame's estimate of its error costs, `files` encoding,
 //! `service` HTTP; `spread` sums up runs, `memory` asks the system, `report` writes the table.
 
 mod accuracy;
@@ -12,6 +12,7 @@ mod frames;
 mod instances;
 mod memory;
 mod report;
+mod savings;
 mod service;
 mod spread;
 
@@ -53,7 +54,7 @@ const QUICK: Effort = Effort {
 };
 
 /// What is measured, unless some of these are named.
-const ROOMS: [&str; 4] = ["frames", "instances", "estimates", "service"];
+const ROOMS: [&str; 5] = ["frames", "instances", "savings", "estimates", "service"];
 
 fn main() -> ExitCode {
     let mut quick = false;
@@ -111,6 +112,9 @@ fn run(effort: Effort, quick: bool, rooms: &[&str]) -> Result<(), Box<dyn Error>
     }
     if rooms.contains(&"instances") {
         report.tables.push(instances::instances(effort)?);
+    }
+    if rooms.contains(&"savings") {
+        report.tables.push(savings::savings(effort)?);
     }
     if rooms.contains(&"estimates") {
         let table = accuracy::estimates(&mut new_renderer()?, effort)?;

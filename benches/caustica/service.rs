@@ -47,9 +47,9 @@ pub(crate) fn requests(effort: Effort) -> Result<Service, Box<dyn Error>> {
         ],
     );
     let small = [
-        ("/quality/water_cells", 32),
-        ("/output/width", 32),
-        ("/output/height", 32),
+        ("/quality/water_cells", "32"),
+        ("/output/width", "32"),
+        ("/output/height", "32"),
     ];
     let scenes = Scenes {
         first: serde_json::to_value(&scene("scenes/sine_pool.json", &small)?.scene)?,
