@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 
 use super::gpu_data::{Light, Receiver, vec2, vec4};
 use super::maps::MapLayout;
+use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::solid_angle::solid_angle;
 use crate::scene::facts::{SceneFacts, SunFacts};
 use crate::scene::source::Source;
@@ -56,6 +57,18 @@ fn largest_beam(facts: &SceneFacts, sun: &SunFacts) -> f64 {
         Source::Submerged { .. } => (0.5 * cell.x * cell.y * OCTAHEDRAL_SR).min(TAU),
         Source::Point { position_m } => lamp_beam(facts, sun, position_m, cell),
     }
+}
+
+/// Most of a light's flux that any water lets through: near the horizon little, and what is summed has to count that finely. 1 of a point
+/// light, and where nothing goes through.
+fn brightest_transmittance(facts: &SceneFacts, sun: &SunFacts) -> f64 {
+    let Source::Sun { to_light } = sun.source else {
+        return 1.0;
+    };
+    let tilt = facts.surface.max_slope().atan();
+    let to_normal = (to_light.y.clamp(0.0, 1.0).acos() - tilt).max(0.0);
+    let most = fresnel_transmittance(to_normal.cos(), facts.ior);
+    if most > 0.0 { most } else { 1.0 }
 }
 
 /// Largest solid angle of half a cell, sr: its area seen from the light's height and the steepest slope, over the square of its least
@@ -165,7 +178,8 @@ pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
 /// Wide sums take the largest beam at 2⁴⁰. Narrow ones take it at 2³⁰ at most and leave room for [`NARROW_HEADROOM`] times the
 /// flux of an evenly lit texel.
 pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
-    let beam = largest_beam(facts, &facts.suns[index]);
+    let sun = &facts.suns[index];
+    let beam = largest_beam(facts, sun) * brightest_transmittance(facts, sun);
     if wide_sums {
         return (WIDE_BEAM_COUNTS / beam).log2().floor().exp2();
     }
@@ -176,7 +190,7 @@ pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
     narrow.min(BEAM_COUNTS / beam).log2().floor().exp2()
 }
 
-/// Flux of a texel of a map under flat water and a light of unit power.
+/// Flux of a texel of a map under flat water as transparent as its most transparent slope, and a light of unit power.
 struct TexelFlux {
     /// Where the light is nearest.
     brightest: f64,
@@ -187,6 +201,7 @@ struct TexelFlux {
 /// That of each map that is asked for.
 fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelFlux> {
     let sun = &facts.suns[index];
+    let transmittance = brightest_transmittance(facts, sun);
     let even = |flux: f64| TexelFlux {
         brightest: flux,
         mean: flux,
@@ -195,7 +210,7 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
         let texels = f64::from(map.width) * f64::from(map.height);
         let area_m2 = map.rect.size().x * map.rect.size().y / texels;
         match (sun.source, &facts.floor) {
-            (Source::Sun { to_light }, _) => even(to_light.y * area_m2),
+            (Source::Sun { to_light }, _) => even(transmittance * to_light.y * area_m2),
             (_, Some(floor)) => lamp_on_floor(sun, &map.rect, floor.y_m, facts.ior, texels),
             (_, None) => even(area_m2),
         }
@@ -210,7 +225,7 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
     let objects = objects.filter_map(move |(_, (level_box, object))| {
         let area_m2 = 1.0 / level_box.as_ref()?.density_per_flux;
         let Some(position_m) = sun.source.position_m() else {
-            return Some(even(area_m2));
+            return Some(even(transmittance * area_m2));
         };
         let middle_m = object.wet_middle();
         let rise_m = sun.source.seeming_height_m(middle_m.y, facts.ior);
@@ -293,7 +308,8 @@ pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     {
         return true;
     }
-    scale * largest_beam(facts, &facts.suns[index]) < FINE_COUNTS.max(PART_COUNTS * parts)
+    let beam = largest_beam(facts, sun) * brightest_transmittance(facts, sun);
+    scale * beam < FINE_COUNTS.max(PART_COUNTS * parts)
         || scale * coarsest < FINE_COUNTS
         || scale * finest < FINEST_MAP_COUNTS
 }

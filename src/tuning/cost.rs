@@ -46,8 +46,8 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
         }
         "surface" => cells * (1.0 + waves),
         "beams" => cells,
-        // A ray looks at every receiver.
-        "hits" => cells * (1.0 + wet),
+        // A ray looks at the objects over its way, which the hierarchy over them finds: between some and all of a row of them.
+        "hits" => cells * (1.0 + wet.sqrt()),
         // Beams cover the maps about twice over, however many there are; each has its share of setting up, and each channel its sums.
         "deposit" => (5.0 * cells + texels) * sums,
         // Parts along the shadows' edges, each with rays through the waves and down the meshes' hierarchies.
@@ -60,7 +60,9 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
         "landed" => texels * f64::from(facts.channels()),
         "irradiance" => texels,
         // A quarter of all the light's passes.
-        "coarse_irradiance" => 0.25 * (cells * (5.0 * sums + 2.0 + waves + wet) + texels * sums),
+        "coarse_irradiance" => {
+            0.25 * (cells * (5.0 * sums + 2.0 + waves + wet.sqrt()) + texels * sums)
+        }
         "estimate" => texels,
         "camera_hits" => pixels * (1.0 + waves),
         "camera_irradiance" | "shade" => pixels,

@@ -2,9 +2,9 @@
 
 use caustica::gpu::shader::Module;
 use caustica::passes::desc::Run;
-use caustica::passes::maps::MapLayout;
+use caustica::passes::maps::{self, MapLayout};
 use caustica::passes::{
-    self, Groups, PassDesc, Repeat, Work, depth_profile, landed, level_map, slot, term,
+    self, Groups, PassDesc, Repeat, Work, depth_profile, estimate, landed, level_map, slot, term,
 };
 use caustica::scene::facts::{MOST_LIGHTS, SceneFacts};
 use caustica::scene::ranges::{self, Integer as _};
@@ -76,7 +76,7 @@ fn terms_do_not_overlap() {
 fn a_workgroups_account_holds_what_it_notes() {
     let module = module("passes/deposit.wgsl");
     let places = array_length(&module, "account");
-    assert_eq!(places, term::LEFT + 3, "terms up to what leaves the maps");
+    assert_eq!(places, term::LANDED + 3, "terms up to what lands");
 }
 
 #[test]
@@ -94,6 +94,11 @@ fn figures_of_queues_and_maps_agree() {
     let each = constant(&profile, "TEXELS_EACH").unwrap() as u32;
     let side = size(&profile, "profile_count")[0];
     assert_eq!(each * side, depth_profile::TEXELS_PER_GROUP);
+    let estimate = module("passes/estimate.wgsl");
+    let each = constant(&estimate, "PLACES_EACH").unwrap() as u32;
+    let side = size(&estimate, "estimate_main")[0];
+    assert_eq!(each * side, estimate::PLACES_PER_GROUP);
+    agrees("NOWHERE", f64::from(maps::NOWHERE));
     agrees("EMPTY_DEPTH", level_map::EMPTY_DEPTH);
     let camera = module("passes/camera_irradiance.wgsl");
     assert_eq!(array_length(&camera, "suns"), MOST_LIGHTS);

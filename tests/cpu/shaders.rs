@@ -13,8 +13,9 @@ use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Va
 /// Storage buffers that every WebGPU device can bind to one stage.
 const BASELINE_STORAGE_BUFFERS: usize = 8;
 /// Uniform variables that steps bring along.
-const UNIFORMS: [&str; 9] = [
-    "comparison",
+const UNIFORMS: [&str; 10] = [
+    "coarse_light",
+    "estimate",
     "level_map_view",
     "light",
     "planes",
