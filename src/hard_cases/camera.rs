@@ -3,49 +3,32 @@
 use serde_json::{Value, json};
 
 use super::bench::{Bench, texels};
-use super::case::{Case, Failure, Family};
+use super::case::Family::Camera;
+use super::case::{Case, Failure};
 use super::truths::{pool, sun, waves, with, worst};
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::scene::LayerName;
-
-const fn case(
-    name: &'static str,
-    breaks: &'static str,
-    check: &'static str,
-    bound: f64,
-    run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
-) -> Case {
-    Case {
-        name,
-        family: Family::Camera,
-        breaks,
-        check,
-        bound,
-        run,
-        known_failure: None,
-    }
-}
 
 const RADIANCE: &str = "the middle pixel against ρE/π through the water's surface";
 const LIT: &str = "share of pixels that are negative or all black";
 const REFUSED: &str = "0 where it is refused at that field";
 
 pub(super) const CASES: &[Case] = &[
-    case(
+    Camera.case(
         "a_micrometre_under_the_surface",
         "a start on the wrong side",
         RADIANCE,
         2e-3,
         |b| looking_down(b, -1e-6),
     ),
-    case(
+    Camera.case(
         "a_micrometre_over_the_surface",
         "a start on the wrong side",
         RADIANCE,
         2e-3,
         |b| looking_down(b, 1e-6),
     ),
-    case("on_the_surface", "a start on neither side", LIT, 0.0, |b| {
+    Camera.case("on_the_surface", "a start on neither side", LIT, 0.0, |b| {
         lit(
             b,
             camera(
@@ -55,14 +38,14 @@ pub(super) const CASES: &[Case] = &[
             ),
         )
     }),
-    case("on_a_wave", "a start within a crest", LIT, 0.05, |b| {
+    Camera.case("on_a_wave", "a start within a crest", LIT, 0.05, |b| {
         let scene = with(
             camera([0.3, 0.0, 0.1], [0.5, -1.0, 0.4], json!({})),
             &[("/water/waves", waves())],
         );
         lit(b, scene)
     }),
-    case(
+    Camera.case(
         "along_its_own_up",
         "a basis without a right",
         REFUSED,
@@ -78,7 +61,7 @@ pub(super) const CASES: &[Case] = &[
             )
         },
     ),
-    case(
+    Camera.case(
         "a_field_of_view_of_a_tenth_of_a_degree",
         "pixels of almost one ray",
         LIT,
@@ -94,7 +77,7 @@ pub(super) const CASES: &[Case] = &[
             )
         },
     ),
-    case(
+    Camera.case(
         "a_field_of_view_of_179_degrees",
         "pixels of grazing rays",
         LIT,
@@ -112,7 +95,7 @@ pub(super) const CASES: &[Case] = &[
             lit(b, scene)
         },
     ),
-    case(
+    Camera.case(
         "under_water_at_the_critical_angle",
         "total reflection at its very edge",
         LIT,
@@ -130,7 +113,7 @@ pub(super) const CASES: &[Case] = &[
             lit(b, scene)
         },
     ),
-    case(
+    Camera.case(
         "one_pixel",
         "a picture without neighbours",
         RADIANCE,
@@ -146,7 +129,7 @@ pub(super) const CASES: &[Case] = &[
             )
         },
     ),
-    case(
+    Camera.case(
         "one_column_of_8192_pixels",
         "bands and aspects",
         LIT,
@@ -163,7 +146,7 @@ pub(super) const CASES: &[Case] = &[
             lit(b, scene)
         },
     ),
-    case(
+    Camera.case(
         "pictures_of_8192_by_8192_pixels",
         "memory without end",
         REFUSED,

@@ -47,6 +47,26 @@ impl Family {
             Self::Camera => "camera",
         }
     }
+
+    /// A case of this family.
+    pub(super) const fn case(
+        self,
+        name: &'static str,
+        breaks: &'static str,
+        check: &'static str,
+        bound: f64,
+        run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
+    ) -> Case {
+        Case {
+            name,
+            family: self,
+            breaks,
+            check,
+            bound,
+            run,
+            known_failure: None,
+        }
+    }
 }
 
 /// A hard case.

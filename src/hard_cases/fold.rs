@@ -2,33 +2,15 @@
 
 use serde_json::{Value, json};
 
-use super::bench::Bench;
-use super::case::{Case, Failure, Family};
+use super::case::Case;
+use super::case::Family::Fold;
 use super::truths::{flat_error, largest_relative, pool, reference_error, sun, waves, with};
-
-const fn case(
-    name: &'static str,
-    breaks: &'static str,
-    check: &'static str,
-    bound: f64,
-    run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
-) -> Case {
-    Case {
-        name,
-        family: Family::Fold,
-        breaks,
-        check,
-        bound,
-        run,
-        known_failure: None,
-    }
-}
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
 const REFERENCE: &str = "relative L1 against the reference";
 
 pub(super) const CASES: &[Case] = &[
-    case(
+    Fold.case(
         "footprints_that_turn_inside_out",
         "signed areas taken for flux",
         REFERENCE,
@@ -45,35 +27,35 @@ pub(super) const CASES: &[Case] = &[
             reference_error(b, scene)
         },
     ),
-    case(
+    Fold.case(
         "footprints_within_one_texel",
         "divisions by footprints",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, sized(1024, 2, 2)),
     ),
-    case(
+    Fold.case(
         "footprints_of_a_hundred_thousand_texels",
         "loops over texels by one invocation",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, sized(4, 1024, 1024)),
     ),
-    case(
+    Fold.case(
         "footprints_of_millions_of_texels",
         "loops over texels by one invocation",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, sized(2, 2048, 2048)),
     ),
-    case(
+    Fold.case(
         "texels_long_and_thin",
         "rows and columns taken alike",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, sized(16, 2048, 2)),
     ),
-    case(
+    Fold.case(
         "every_corner_on_a_texel_corner",
         "boundaries counted twice or not at all",
         CLOSED_FORM,
@@ -87,7 +69,7 @@ pub(super) const CASES: &[Case] = &[
             flat_error(b, scene)
         },
     ),
-    case(
+    Fold.case(
         "sums_beyond_32_bits",
         "a focus that wraps a sum",
         "largest relative difference of the scaled sun's map from the sun's",

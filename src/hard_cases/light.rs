@@ -3,27 +3,9 @@
 use serde_json::{Value, json};
 
 use super::bench::Bench;
-use super::case::{Case, Failure, Family};
+use super::case::Family::Light;
+use super::case::{Case, Failure};
 use super::truths::{flat_error, largest_to_mean, pool, reference_error, sun, waves, with};
-
-/// A case of this family.
-const fn case(
-    name: &'static str,
-    breaks: &'static str,
-    check: &'static str,
-    bound: f64,
-    run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
-) -> Case {
-    Case {
-        name,
-        family: Family::Light,
-        breaks,
-        check,
-        bound,
-        run,
-        known_failure: None,
-    }
-}
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
 const REFERENCE: &str = "relative L1 against the reference";
@@ -31,58 +13,58 @@ const DARK: &str = "share of texels that are not black";
 const GRAZING: &str = "cosines near 0, Fresnel near 1, windows of very long rays";
 
 pub(super) const CASES: &[Case] = &[
-    case(
+    Light.case(
         "sun_in_the_zenith",
         "an azimuth without meaning",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, flat(90.0)),
     ),
-    case("sun_at_10_degrees", GRAZING, CLOSED_FORM, 1e-4, |b| {
+    Light.case("sun_at_10_degrees", GRAZING, CLOSED_FORM, 1e-4, |b| {
         flat_error(b, flat(10.0))
     }),
-    case("sun_at_1_degree", GRAZING, CLOSED_FORM, 1e-4, |b| {
+    Light.case("sun_at_1_degree", GRAZING, CLOSED_FORM, 1e-4, |b| {
         flat_error(b, flat(1.0))
     }),
-    case(
+    Light.case(
         "sun_at_a_hundredth_of_a_degree",
         GRAZING,
         CLOSED_FORM,
         2e-4,
         |b| flat_error(b, flat(0.01)),
     ),
-    case("sun_on_the_horizon", "0/0 in refraction", DARK, 0.0, |b| {
+    Light.case("sun_on_the_horizon", "0/0 in refraction", DARK, 0.0, |b| {
         dark(b, flat(0.0))
     }),
-    case(
+    Light.case(
         "sun_below_the_horizon",
         "light from below",
         DARK,
         0.0,
         |b| dark(b, flat(-5.0)),
     ),
-    case(
+    Light.case(
         "waves_under_a_sun_at_10_degrees",
         "waves that look away from the sun",
         REFERENCE,
         0.03,
         |b| reference_error(b, wavy(10.0)),
     ),
-    case(
+    Light.case(
         "waves_under_a_sun_at_1_degree",
         "waves that look away from the sun",
         REFERENCE,
         0.05,
         |b| reference_error(b, wavy(1.0)),
     ),
-    case(
+    Light.case(
         "waves_under_a_sun_at_a_hundredth_of_a_degree",
         "waves that look away from the sun",
         REFERENCE,
         0.05,
         |b| reference_error(b, wavy(0.01)),
     ),
-    case(
+    Light.case(
         "sun_along_the_steepest_slope",
         "cos θ_i = 0 where Fresnel and refraction are steepest",
         REFERENCE,
@@ -102,7 +84,7 @@ pub(super) const CASES: &[Case] = &[
             reference_error(b, scene)
         },
     ),
-    case("no_irradiance", "a division by the flux", DARK, 0.0, |b| {
+    Light.case("no_irradiance", "a division by the flux", DARK, 0.0, |b| {
         dark(
             b,
             with(
@@ -111,7 +93,7 @@ pub(super) const CASES: &[Case] = &[
             ),
         )
     }),
-    case(
+    Light.case(
         "one_dark_channel",
         "a division by the flux of a channel",
         "worst texel against E cos θ T e^(−cd)",
@@ -126,7 +108,7 @@ pub(super) const CASES: &[Case] = &[
             )
         },
     ),
-    case(
+    Light.case(
         "dim_and_bright_suns_together",
         "the dim sun lost in the sums of the bright one",
         "largest difference of the sum from the two suns alone, and of the dim from the scaled bright one, to the mean",

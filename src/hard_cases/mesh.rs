@@ -5,34 +5,17 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::bench::{Bench, texels};
-use super::case::{Case, Failure, Family};
+use super::case::Family::Mesh;
+use super::case::{Case, Failure};
 use super::truths::{largest_to_mean, pool, reference_error, relative_l1, sun, waves, with};
 use crate::scene::LayerName;
-
-const fn case(
-    name: &'static str,
-    breaks: &'static str,
-    check: &'static str,
-    bound: f64,
-    run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
-) -> Case {
-    Case {
-        name,
-        family: Family::Mesh,
-        breaks,
-        check,
-        bound,
-        run,
-        known_failure: None,
-    }
-}
 
 const REFERENCE: &str = "relative L1 of the floor against the reference";
 const SAME: &str = "largest difference of the floor from that of the sound mesh, to the mean";
 const OPEN: &str = "largest difference of the floor from that without the mesh, to the mean";
 
 pub(super) const CASES: &[Case] = &[
-    case(
+    Mesh.case(
         "one_triangle",
         "boxes without thickness",
         REFERENCE,
@@ -48,7 +31,7 @@ pub(super) const CASES: &[Case] = &[
             )
         },
     ),
-    case(
+    Mesh.case(
         "degenerate_triangles_among_sound_ones",
         "normals of nothing",
         SAME,
@@ -58,7 +41,7 @@ pub(super) const CASES: &[Case] = &[
             same_as_box(b, &broken)
         },
     ),
-    case(
+    Mesh.case(
         "duplicate_triangles",
         "surfaces that hide themselves",
         SAME,
@@ -74,7 +57,7 @@ pub(super) const CASES: &[Case] = &[
             same_as_box(b, &(cuboid([0.4; 3]) + &faces))
         },
     ),
-    case(
+    Mesh.case(
         "needle_triangles",
         "determinants of nearly nothing",
         REFERENCE,
@@ -97,7 +80,7 @@ pub(super) const CASES: &[Case] = &[
             reference_error(b, under_waves(&fan))
         },
     ),
-    case(
+    Mesh.case(
         "nothing_but_zero_area",
         "a mesh of no surface",
         "0 where it is refused in words",
@@ -108,7 +91,7 @@ pub(super) const CASES: &[Case] = &[
             Ok(_) => Ok(1.0),
         },
     ),
-    case(
+    Mesh.case(
         "flipped_winding",
         "sides told by winding",
         SAME,
@@ -118,11 +101,11 @@ pub(super) const CASES: &[Case] = &[
             same_as_box(b, &flipped)
         },
     ),
-    case("mixed_winding", "sides told by winding", SAME, 1e-6, |b| {
+    Mesh.case("mixed_winding", "sides told by winding", SAME, 1e-6, |b| {
         let mixed = turned(&cuboid([0.4; 3]), |face| face % 2 == 0);
         same_as_box(b, &mixed)
     }),
-    case(
+    Mesh.case(
         "an_open_box",
         "insides that are seen",
         REFERENCE,
@@ -139,7 +122,7 @@ pub(super) const CASES: &[Case] = &[
             reference_error(b, under_waves(&open))
         },
     ),
-    case(
+    Mesh.case(
         "a_mesh_through_itself",
         "insides within insides",
         REFERENCE,
@@ -149,7 +132,7 @@ pub(super) const CASES: &[Case] = &[
             reference_error(b, under_waves(&both))
         },
     ),
-    case(
+    Mesh.case(
         "three_sheets_on_an_edge",
         "edges of three faces",
         REFERENCE,
@@ -160,35 +143,35 @@ pub(super) const CASES: &[Case] = &[
             reference_error(b, under_waves(sheets))
         },
     ),
-    case(
+    Mesh.case(
         "wholly_above_the_water",
         "dry meshes that stop wet light",
         OPEN,
         0.0,
         |b| as_open(b, at(&cuboid([0.4; 3]), 1.0)),
     ),
-    case(
+    Mesh.case(
         "cut_by_the_surface",
         "rays that start inside",
         REFERENCE,
         0.05,
         |b| reference_error(b, at(&cuboid([0.4; 3]), 0.0)),
     ),
-    case(
+    Mesh.case(
         "touching_the_floor",
         "coplanar faces of floor and mesh",
         REFERENCE,
         0.02,
         |b| reference_error(b, at(&cuboid([0.4; 3]), -1.8)),
     ),
-    case(
+    Mesh.case(
         "below_the_floor",
         "meshes that no light reaches",
         OPEN,
         0.0,
         |b| as_open(b, at(&cuboid([0.4; 3]), -3.0)),
     ),
-    case(
+    Mesh.case(
         "around_the_camera",
         "rays that start within a mesh",
         "share of pixels that are not finite and black or lit",
@@ -215,7 +198,7 @@ pub(super) const CASES: &[Case] = &[
             Ok(bad as f64)
         },
     ),
-    case(
+    Mesh.case(
         "a_plate_across_the_light",
         "a level map without depth",
         REFERENCE,
@@ -232,21 +215,21 @@ pub(super) const CASES: &[Case] = &[
             )
         },
     ),
-    case(
+    Mesh.case(
         "a_rod_thinner_than_a_map_texel",
         "objects between the texels",
         REFERENCE,
         0.02,
         |b| reference_error(b, under_waves(&cuboid([0.6, 0.6e-3, 0.6e-3]))),
     ),
-    case(
+    Mesh.case(
         "a_million_triangles",
         "buffers, counts and draws of a million",
         REFERENCE,
         0.03,
         |b| reference_error(b, at(&hills(708), -1.2)),
     ),
-    case(
+    Mesh.case(
         "detail_of_a_centimetre_a_thousand_kilometres_out",
         "coordinates in f32",
         SAME,
@@ -275,7 +258,7 @@ pub(super) const CASES: &[Case] = &[
             Ok(largest_to_mean(&b.map(moved)?, &near))
         },
     ),
-    case(
+    Mesh.case(
         "a_wall_without_thickness_edge_on",
         "a shadow of no width",
         OPEN,

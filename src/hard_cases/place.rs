@@ -3,32 +3,15 @@
 use serde_json::{Value, json};
 
 use super::bench::Bench;
-use super::case::{Case, Failure, Family};
+use super::case::Family::Place;
+use super::case::{Case, Failure};
 use super::truths::{largest_to_mean, pool, sun, with};
-
-const fn case(
-    name: &'static str,
-    breaks: &'static str,
-    check: &'static str,
-    bound: f64,
-    run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
-) -> Case {
-    Case {
-        name,
-        family: Family::Place,
-        breaks,
-        check,
-        bound,
-        run,
-        known_failure: None,
-    }
-}
 
 const MOVED: &str = "largest difference from the scene at the origin, to the mean";
 const SCALED: &str = "largest difference from the scene of metres, to the mean";
 
 pub(super) const CASES: &[Case] = &[
-    case(
+    Place.case(
         "moved_by_100_km",
         "positions in f32 far from the origin",
         MOVED,
@@ -39,7 +22,7 @@ pub(super) const CASES: &[Case] = &[
             Ok(largest_to_mean(&there, &here))
         },
     ),
-    case(
+    Place.case(
         "lifted_by_100_km",
         "heights in f32 far from the origin",
         MOVED,
@@ -50,14 +33,14 @@ pub(super) const CASES: &[Case] = &[
             Ok(largest_to_mean(&there, &here))
         },
     ),
-    case(
+    Place.case(
         "a_thousandth_of_the_size",
         "tolerances in metres",
         SCALED,
         1e-4,
         |b| scaled(b, 1e-3),
     ),
-    case(
+    Place.case(
         "a_thousand_times_the_size",
         "tolerances in metres",
         SCALED,

@@ -3,26 +3,9 @@
 use serde_json::{Value, json};
 
 use super::bench::Bench;
-use super::case::{Case, Failure, Family};
+use super::case::Family::Water;
+use super::case::{Case, Failure};
 use super::truths::{flat_error, largest_to_mean, pool, reference_error, sun, waves, with, worst};
-
-const fn case(
-    name: &'static str,
-    breaks: &'static str,
-    check: &'static str,
-    bound: f64,
-    run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
-) -> Case {
-    Case {
-        name,
-        family: Family::Water,
-        breaks,
-        check,
-        bound,
-        run,
-        known_failure: None,
-    }
-}
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
 const REFERENCE: &str = "relative L1 against the reference";
@@ -31,14 +14,14 @@ const PHASE: &str = "phases in f32, or too few digits of the time";
 const AGAIN: &str = "rays that would meet the water again, wide drifts, slopes that look away";
 
 pub(super) const CASES: &[Case] = &[
-    case(
+    Water.case(
         "flat_water",
         "0/0 in windows and slopes",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, pool()),
     ),
-    case(
+    Water.case(
         "ripples_of_a_millimetre",
         "waves far smaller than a cell, heights below the rounding of metres",
         "mean against that of flat water; more than 1 where no warning is given",
@@ -61,16 +44,16 @@ pub(super) const CASES: &[Case] = &[
             Ok((rippled / flat - 1.0).abs() + warned)
         },
     ),
-    case("slopes_of_1", AGAIN, REFERENCE, 0.05, |b| {
+    Water.case("slopes_of_1", AGAIN, REFERENCE, 0.05, |b| {
         reference_error(b, steep(1.0))
     }),
-    case("slopes_of_5", AGAIN, REFERENCE, 0.08, |b| {
+    Water.case("slopes_of_5", AGAIN, REFERENCE, 0.08, |b| {
         reference_error(b, steep(5.0))
     }),
-    case("slopes_of_20", AGAIN, REFERENCE, 0.2, |b| {
+    Water.case("slopes_of_20", AGAIN, REFERENCE, 0.2, |b| {
         reference_error(b, steep(20.0))
     }),
-    case(
+    Water.case(
         "steep_waves_are_warned_of",
         "a silent limit of the model",
         "0 where `waves_shade_waves` is among the warnings",
@@ -80,21 +63,21 @@ pub(super) const CASES: &[Case] = &[
             Ok(f64::from(u8::from(!b.was_warned_of("waves_shade_waves"))))
         },
     ),
-    case(
+    Water.case(
         "floor_at_depth_0",
         "rays without length",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(0))])),
     ),
-    case(
+    Water.case(
         "floor_at_a_tenth_of_a_millimetre",
         "rays of almost no length",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(1e-4))])),
     ),
-    case(
+    Water.case(
         "floor_at_11000_metres",
         "positions in f32 far below",
         CLOSED_FORM,
@@ -104,7 +87,7 @@ pub(super) const CASES: &[Case] = &[
     .known_to_fail(
         "3.9e-3: 11 km down f32 holds the end of a ray to a millimetre, and texels are 6 cm",
     ),
-    case(
+    Water.case(
         "waves_over_11000_metres",
         "sub-millimetre slopes that move light by kilometres",
         "mean against that of flat water",
@@ -127,7 +110,7 @@ pub(super) const CASES: &[Case] = &[
             Ok((mean(&b.map(wavy)?) / mean(&b.map(flat)?) - 1.0).abs())
         },
     ),
-    case(
+    Water.case(
         "index_1",
         "waves that must not show at all",
         "worst texel against an even floor",
@@ -142,46 +125,46 @@ pub(super) const CASES: &[Case] = &[
                 .fold(0.0, worst))
         },
     ),
-    case(
+    Water.case(
         "index_1_0001",
         "differences of nearly equal directions",
         REFERENCE,
         5e-3,
         |b| reference_error(b, wavy(1.0001)),
     ),
-    case("index_2_4", "strong refraction", REFERENCE, 0.03, |b| {
+    Water.case("index_2_4", "strong refraction", REFERENCE, 0.03, |b| {
         reference_error(b, wavy(2.4))
     }),
-    case(
+    Water.case(
         "index_below_1",
         "total reflection on the way in",
         "0 where it is refused at /water/ior",
         0.0,
         |b| b.refused_at(wavy(0.9), "/water/ior"),
     ),
-    case("a_period_after_0", PHASE, PERIOD, 1e-5, |b| period(b, 0.0)),
-    case(
+    Water.case("a_period_after_0", PHASE, PERIOD, 1e-5, |b| period(b, 0.0)),
+    Water.case(
         "a_period_after_a_million_seconds",
         PHASE,
         PERIOD,
         1e-5,
         |b| period(b, 1e6),
     ),
-    case(
+    Water.case(
         "a_period_after_a_billion_seconds",
         PHASE,
         PERIOD,
         1e-5,
         |b| period(b, 1e9),
     ),
-    case(
+    Water.case(
         "a_period_before_minus_a_million_seconds",
         PHASE,
         PERIOD,
         1e-5,
         |b| period(b, -1e6),
     ),
-    case(
+    Water.case(
         "absorption_of_a_billionth",
         "a series of e^x − 1 cut off",
         CLOSED_FORM,
@@ -196,7 +179,7 @@ pub(super) const CASES: &[Case] = &[
             )
         },
     ),
-    case(
+    Water.case(
         "absorption_of_1000_per_metre",
         "underflow of e^(−cd)",
         CLOSED_FORM,
@@ -208,7 +191,7 @@ pub(super) const CASES: &[Case] = &[
             )
         },
     ),
-    case(
+    Water.case(
         "waves_that_cancel",
         "residues of phases and directions that should be nothing",
         "largest difference from flat water, to the mean",
@@ -227,14 +210,14 @@ pub(super) const CASES: &[Case] = &[
             Ok(largest_to_mean(&found, &flat))
         },
     ),
-    case(
+    Water.case(
         "a_line_focus_on_the_floor",
         "footprints that collapse to segments",
         REFERENCE,
         0.05,
         |b| reference_error(b, focus(&[0.0])),
     ),
-    case(
+    Water.case(
         "a_point_focus_on_the_floor",
         "footprints that collapse to points",
         REFERENCE,
