@@ -11,7 +11,7 @@ export NODEVICE_SELECT ?= 1
 endif
 
 .DEFAULT_GOAL := build
-.PHONY: demo build test lint bench docs mutants clean deps
+.PHONY: demo build test lint bench docs mutants fuzz fuzz-deps clean deps
 
 # Render the example scene.
 demo: build
@@ -40,7 +40,21 @@ bench: deps
 docs: deps
 	$(CARGO) run --release --locked --example make_docs
 
-# Plant wrong signs in a copy of the sources, see that the tests catch each, and write docs/mutants.md; half an hour.
+# Seconds that each fuzz target runs.
+FUZZ_SECONDS ?= 60
+
+# Feed any bytes to the readers of scenes and meshes; what breaks them is kept in fuzz/artifacts. The build takes minutes, once.
+# Coverage is a stable option of the compiler, but the way cargo-fuzz asks for it is not: hence RUSTC_BOOTSTRAP. No sanitizer: there
+# is no unsafe code of ours to watch.
+fuzz: fuzz-deps
+	$(CARGO) run --release --locked --example fuzz_seeds -- fuzz/corpus
+	RUSTC_BOOTSTRAP=1 $(CARGO) fuzz run --sanitizer none obj -- -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=16384
+	RUSTC_BOOTSTRAP=1 $(CARGO) fuzz run --sanitizer none scene -- -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=16384
+
+fuzz-deps: deps
+	@$(CARGO) fuzz --version >/dev/null 2>&1 || $(CARGO) install cargo-fuzz --version ^0.13 --locked
+
+# Plant errors in shaders and in a copy of the sources, see that hard cases and tests catch each, and write docs/mutants.md; half an hour.
 mutants: deps
 	$(CARGO) run --release --locked --example mutants
 

@@ -1,15 +1,20 @@
-//! Plants wrong signs in a copy of the project, one at a time, and sees that the tests notice each.
+//! Plants errors in the project, one at a time, and sees that its tests and hard cases notice each.
 //!
-//! `make mutants` runs all and writes `docs/mutants.md`; each takes a build, so minutes. With words behind it
-//! (`cargo run --release --example mutants -- refract.rs`) only the plants run whose file or description holds one of them, and
-//! nothing is written. Exit code 1 if one survives.
+//! Those in shaders are planted in memory, and the hard cases of a family are rendered with them: seconds each. Those in Rust are
+//! planted in a copy of the sources, and the tests are built and run there: about a minute each.
 //!
-//! * `plants`: what is planted;
-//! * `tree`: the copy it is planted in;
+//! `make mutants` runs all and writes `docs/mutants.md`. With words behind it (`cargo run --release --example mutants -- refract.rs`)
+//! only the plants run whose file or description holds one of them, and nothing is written. Exit code 1 if one survives.
+//!
+//! * `shader_plants`, `plants`: what is planted;
+//! * `shader_trial`: rendering with planted shaders;
+//! * `tree`: the copy that Rust is planted in;
 //! * `trial`: building and testing that;
 //! * `table`: what came of it.
 
 mod plants;
+mod shader_plants;
+mod shader_trial;
 mod table;
 mod tree;
 mod trial;
@@ -19,6 +24,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use plants::Plant;
+use shader_plants::ShaderPlant;
+use shader_trial::{Bench, Noticed};
 use tree::Tree;
 use trial::{Outcome, Workshop};
 
@@ -39,20 +46,58 @@ fn main() -> ExitCode {
 /// Whether every plant was noticed.
 fn run() -> Result<bool, Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let is_wanted = |plant: &&Plant| {
-        let holds = |word: &String| plant.file.contains(word) || plant.what.contains(word);
+    let is_wanted = |file: &str, what: &str| {
+        let holds = |word: &String| file.contains(word) || what.contains(word);
         words.is_empty() || words.iter().any(holds)
     };
-    let plants: Vec<&Plant> = plants::ALL.iter().filter(is_wanted).collect();
-    if plants.is_empty() {
+    let in_shaders = shader_plants::ALL.iter();
+    let in_shaders: Vec<&ShaderPlant> = in_shaders.filter(|p| is_wanted(p.file, p.what)).collect();
+    let in_rust = plants::ALL.iter();
+    let in_rust: Vec<&Plant> = in_rust.filter(|p| is_wanted(p.file, p.what)).collect();
+    if in_shaders.is_empty() && in_rust.is_empty() {
         return Err(format!(
             "no plant's file or description holds {}",
             words.join(" or ")
         )
         .into());
     }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let tree = Tree::copy(root)?;
+    let noticed = plant_shaders(&in_shaders)?;
+    let outcomes = plant_rust(&in_rust)?;
+    let page = table::page(&in_shaders, &noticed, &in_rust, &outcomes);
+    println!("{page}");
+    if words.is_empty() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        std::fs::write(root.join(PAGE), &page)?;
+    }
+    let all_noticed = noticed.iter().all(|noticed| noticed.missing.is_empty());
+    Ok(all_noticed && outcomes.iter().all(Outcome::is_caught))
+}
+
+fn plant_shaders(plants: &[&ShaderPlant]) -> Result<Vec<Noticed>, Box<dyn Error>> {
+    let mut bench = Bench::default();
+    let mut all = Vec::new();
+    for (number, plant) in plants.iter().enumerate() {
+        eprintln!(
+            "shaders, {} of {}: {}",
+            number + 1,
+            plants.len(),
+            plant.what
+        );
+        let noticed = bench.try_plant(plant)?;
+        eprintln!("  red: {}", noticed.red.join(", "));
+        if !noticed.missing.is_empty() {
+            eprintln!("  NOT NOTICED by {}", noticed.missing.join(", "));
+        }
+        all.push(noticed);
+    }
+    Ok(all)
+}
+
+fn plant_rust(plants: &[&Plant]) -> Result<Vec<Outcome>, Box<dyn Error>> {
+    if plants.is_empty() {
+        return Ok(Vec::new());
+    }
+    let tree = Tree::copy(Path::new(env!("CARGO_MANIFEST_DIR")))?;
     let workshop = Workshop::of(&tree);
     // Tests that fail anyway would notice everything.
     for binary in ["cpu", "gpu"] {
@@ -69,7 +114,7 @@ fn run() -> Result<bool, Box<dyn Error>> {
     }
     let mut outcomes = Vec::new();
     for (number, plant) in plants.iter().enumerate() {
-        eprintln!("{} of {}: {}", number + 1, plants.len(), plant.what);
+        eprintln!("Rust, {} of {}: {}", number + 1, plants.len(), plant.what);
         let planted = tree.plant(plant)?;
         let outcome = workshop.test(plant.binary, plant.tests);
         planted.remove()?;
@@ -77,10 +122,5 @@ fn run() -> Result<bool, Box<dyn Error>> {
         eprintln!("  {outcome}");
         outcomes.push(outcome);
     }
-    let page = table::page(&plants, &outcomes);
-    println!("{page}");
-    if words.is_empty() {
-        std::fs::write(root.join(PAGE), &page)?;
-    }
-    Ok(outcomes.iter().all(Outcome::is_caught))
+    Ok(outcomes)
 }

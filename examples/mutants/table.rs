@@ -3,16 +3,48 @@
 use std::fmt::Write as _;
 
 use super::plants::Plant;
+use super::shader_plants::ShaderPlant;
+use super::shader_trial::Noticed;
 use super::trial::Outcome;
 
 /// A Markdown page: a row for each plant.
-pub(crate) fn page(plants: &[&Plant], outcomes: &[Outcome]) -> String {
-    let caught = outcomes.iter().filter(|outcome| outcome.is_caught());
+pub(crate) fn page(
+    shader_plants: &[&ShaderPlant],
+    noticed: &[Noticed],
+    plants: &[&Plant],
+    outcomes: &[Outcome],
+) -> String {
+    let in_shaders = noticed.iter().filter(|n| n.missing.is_empty()).count();
+    let in_rust = outcomes
+        .iter()
+        .filter(|outcome| outcome.is_caught())
+        .count();
     let mut page = format!(
-        "# Planted errors\n\nEach of these was put into a copy of the sources, alone, and the tests were run; `make mutants` does \
-         it again. {} of {} were caught.\n\n| what | where | instead | caught by |\n|---|---|---|---|\n",
-        caught.count(),
-        outcomes.len()
+        "# Planted errors\n\nEach of these was put into the project, alone, and its tests were run; `make mutants` does it again. \
+         {} of {} were caught.\n",
+        in_shaders + in_rust,
+        noticed.len() + outcomes.len()
+    );
+    page.push_str(
+        "\n## In shaders, against the hard cases\n\nThe hard cases of one family were run with each, those that are known to fail \
+         left out. Bold: cases that had to notice and did not.\n\n\
+         | family | what | where | instead | cases that turned red |\n|---|---|---|---|---|\n",
+    );
+    for (plant, noticed) in shader_plants.iter().zip(noticed) {
+        let red: Vec<String> = noticed.red.iter().map(|name| code(name)).collect();
+        let mut by = format!("{} of {}: {}", red.len(), noticed.of, red.join(", "));
+        for name in &noticed.missing {
+            let _ = write!(by, ", **not {name}**");
+        }
+        let (file, from, to) = (code(plant.file), code(plant.from), code(plant.to));
+        let _ = writeln!(
+            page,
+            "| {} | {} | {file}: {from} | {to} | {by} |",
+            plant.family, plant.what
+        );
+    }
+    page.push_str(
+        "\n## In Rust, against the tests\n\n| what | where | instead | caught by |\n|---|---|---|---|\n",
     );
     for (plant, outcome) in plants.iter().zip(outcomes) {
         let by = match outcome {
@@ -28,7 +60,8 @@ pub(crate) fn page(plants: &[&Plant], outcomes: &[Outcome]) -> String {
     page
 }
 
-/// Text as it is, in a cell of a table.
+/// Text as it is, in a cell of a table: on one line.
 fn code(text: &str) -> String {
-    format!("`{}`", text.replace('|', "\\|"))
+    let words: Vec<&str> = text.split_whitespace().collect();
+    format!("`{}`", words.join(" ").replace('|', "\\|"))
 }

@@ -59,6 +59,9 @@ impl Tree {
                 .set_modified(std::time::SystemTime::now())?;
         }
         remove_others(&tree.root, &tree.root, &names)?;
+        if !tree.target.join("release").is_dir() {
+            lend_dependencies(&own.join("release"), &tree.target.join("release"))?;
+        }
         Ok(tree)
     }
 
@@ -83,6 +86,39 @@ impl Planted {
     pub(crate) fn remove(self) -> io::Result<()> {
         std::fs::write(&self.file, &self.before)
     }
+}
+
+/// Copies what the project's own builds have left of other packages: only the project itself is then built anew. Cargo looks at
+/// each and builds what does not fit.
+fn lend_dependencies(own: &Path, target: &Path) -> io::Result<()> {
+    for folder in [".fingerprint", "build", "deps"] {
+        copy_folder(&own.join(folder), &target.join(folder))?;
+    }
+    Ok(())
+}
+
+/// Copies a folder of cargo's with the times of its files, which cargo goes by; programs and the project's own files stay behind.
+fn copy_folder(from: &Path, to: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(to)?;
+    for entry in std::fs::read_dir(from)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let is_own = name.to_string_lossy().contains(env!("CARGO_PKG_NAME"));
+        let kind = entry.file_type()?;
+        let (from, to) = (entry.path(), to.join(&name));
+        if is_own || kind.is_symlink() {
+            continue;
+        }
+        if kind.is_dir() {
+            copy_folder(&from, &to)?;
+        } else {
+            std::fs::copy(&from, &to)?;
+            let modified = entry.metadata()?.modified()?;
+            let copy = std::fs::File::options().append(true).open(&to)?;
+            copy.set_modified(modified)?;
+        }
+    }
+    Ok(())
 }
 
 /// Files of the project, as git lists them.

@@ -80,6 +80,13 @@ impl Workshop {
                 binary,
             ])
             .arg("--message-format=json-render-diagnostics")
+            // A plant is built more often than it is run.
+            .args(["--config", "profile.release.package.caustica.opt-level=1"])
+            .args([
+                "--config",
+                "profile.release.package.caustica.codegen-units=256",
+            ])
+            .args(["--config", "profile.release.package.caustica.debug=0"])
             .env("CARGO_TARGET_DIR", &self.target)
             .current_dir(&self.root)
             .output()?;

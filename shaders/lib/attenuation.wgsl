@@ -1,6 +1,6 @@
 // Loss of a beam on its way through water. Twin of src/physics/attenuation.rs.
 
-// Fraction left after `length_m` with extinction `c_per_m`: e^(−c d).
+// Fraction left after `length_m` with extinction `c_per_m` (both 0 … 10⁶): e^(−c d).
 fn transmission(c_per_m: f32, length_m: f32) -> f32 {
     return exp(-c_per_m * length_m);
 }

@@ -1,16 +1,19 @@
 // Diffuse light of a uniform sky. Twin of src/physics/sky.rs.
+#import "lib/solid_angle.wgsl"
 
-// Irradiance from an evenly bright cone around the zenith on a plane whose normal has the upward component `normal_y`, as a share
-// of that on a horizontal one; `sin2_cone` is the square of the sine of the cone's half angle.
+// Irradiance from an evenly bright cone around the zenith on a plane whose normal has the upward component `normal_y` (−1 … 1), as a
+// share of that on a horizontal one; `sin2_cone` (1/16 … 1) is the square of the sine of the cone's half angle. Angles by
+// point_angle, because WGSL lets acos be 7·10⁻⁵ off.
 fn cone_share(normal_y: f32, sin2_cone: f32) -> f32 {
     let sin_cone = sqrt(sin2_cone);
     if normal_y >= sin_cone { return normal_y; }
     if normal_y <= -sin_cone { return 0.0; }
-    let x = sqrt(max(1.0 / sin2_cone - 1.0, 0.0));
-    let sin_tilt = sqrt(max(1.0 - normal_y * normal_y, 0.0));
+    let x = sqrt((1.0 - sin2_cone) / sin2_cone);
+    let sin_tilt = sqrt(max((1.0 - normal_y) * (1.0 + normal_y), 0.0));
     let y = clamp(-x * normal_y / sin_tilt, -1.0, 1.0);
-    let reach = sin_tilt * sqrt(max(1.0 - y * y, 0.0));
-    return ((normal_y * acos(y) - x * reach) * sin2_cone + atan2(reach, x)) / (3.14159265 * sin2_cone);
+    let sine = sqrt(max((1.0 - y) * (1.0 + y), 0.0));
+    let reach = sin_tilt * sine;
+    return ((normal_y * point_angle(sine, y) - x * reach) * sin2_cone + point_angle(reach, x)) / (3.14159265 * sin2_cone);
 }
 
 // Irradiance from a uniform sky of `radiance` on a surface whose normal has the upward component `normal_y`, `depth_m` under flat

@@ -49,8 +49,16 @@ impl ShaderSources {
 
     /// The module of `root` with all imports pasted.
     pub fn assemble(&self, root: &str) -> Result<String, GpuError> {
+        self.assemble_all(&[root])
+    }
+
+    /// One module of several files, one behind the other, with all imports pasted once.
+    pub fn assemble_all(&self, roots: &[&str]) -> Result<String, GpuError> {
         let mut out = String::new();
-        self.paste(root, &mut out, &mut BTreeSet::new())?;
+        let mut done = BTreeSet::new();
+        for root in roots {
+            self.paste(root, &mut out, &mut done)?;
+        }
         Ok(out)
     }
 

@@ -6,6 +6,7 @@ use serde_json::Value;
 use tokio_util::sync::CancellationToken;
 
 use super::case::{Case, Failure, Outcome, Verdict};
+use super::truths::Truths;
 use crate::config::Limits;
 use crate::frame::Frame;
 use crate::mesh::{Mesh, MeshStore};
@@ -18,7 +19,10 @@ const MOST_CLOSURE: f64 = 1e-5;
 /// A renderer, and what was seen on the way.
 #[derive(Debug)]
 pub struct Bench<'a> {
-    renderer: &'a mut Renderer,
+    /// `None` where a case is only asked for its scene.
+    renderer: Option<&'a mut Renderer>,
+    pub(super) truths: &'a mut Truths,
+    scene: Option<Value>,
     meshes: MeshStore,
     closure: f64,
     warnings: BTreeMap<String, Option<f64>>,
@@ -26,9 +30,11 @@ pub struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    pub(super) fn new(renderer: &'a mut Renderer) -> Self {
+    pub(super) fn new(renderer: Option<&'a mut Renderer>, truths: &'a mut Truths) -> Self {
         Self {
             renderer,
+            truths,
+            scene: None,
             meshes: MeshStore::default(),
             closure: 0.0,
             warnings: BTreeMap::new(),
@@ -36,8 +42,17 @@ impl<'a> Bench<'a> {
         }
     }
 
+    /// The scene that the case began with.
+    pub(super) fn into_scene(self) -> Option<Value> {
+        self.scene
+    }
+
     /// A scene; `objects[i].mesh` is the text of an OBJ.
-    pub(super) fn scene(&self, mut value: Value) -> Result<ResolvedScene, Failure> {
+    pub(super) fn scene(&mut self, mut value: Value) -> Result<ResolvedScene, Failure> {
+        if self.renderer.is_none() {
+            self.scene.get_or_insert(value);
+            return Err(nothing_renders());
+        }
         let mut meshes: Vec<std::sync::Arc<Mesh>> = Vec::new();
         let objects = value.get_mut("objects").and_then(Value::as_array_mut);
         for object in objects.into_iter().flatten() {
@@ -62,9 +77,12 @@ impl<'a> Bench<'a> {
     }
 
     pub(super) fn render_resolved(&mut self, resolved: &ResolvedScene) -> Result<Frame, Failure> {
+        let Some(renderer) = self.renderer.as_deref_mut() else {
+            return Err(nothing_renders());
+        };
         let never = CancellationToken::new();
-        let frame = self.renderer.render(resolved, &never)?;
-        let again = self.renderer.render(resolved, &never)?;
+        let frame = renderer.render(resolved, &never)?;
+        let again = renderer.render(resolved, &never)?;
         for (name, layer) in &frame.layers {
             if let Some(at) = layer.data.iter().position(|v| !v.is_finite()) {
                 return Err(Failure::Check(format!(
@@ -171,6 +189,10 @@ impl<'a> Bench<'a> {
             picture: self.picture,
         }
     }
+}
+
+fn nothing_renders() -> Failure {
+    Failure::Check("there is no renderer".to_owned())
 }
 
 /// The pixels of a layer of three or four channels (the fourth is left out).

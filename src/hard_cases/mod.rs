@@ -22,6 +22,7 @@ mod truths;
 mod water;
 
 pub use case::{Case, Family, Outcome, Verdict};
+pub use truths::Truths;
 
 use crate::render::Renderer;
 
@@ -46,7 +47,21 @@ pub fn find(name: &str) -> Option<&'static Case> {
 
 /// Runs a case.
 pub fn run(case: &'static Case, renderer: &mut Renderer) -> Outcome {
-    let mut bench = bench::Bench::new(renderer);
+    run_with(case, renderer, &mut Truths::default())
+}
+
+/// Runs a case with references that earlier runs may have left.
+pub fn run_with(case: &'static Case, renderer: &mut Renderer, truths: &mut Truths) -> Outcome {
+    let mut bench = bench::Bench::new(Some(renderer), truths);
     let result = (case.run)(&mut bench);
     bench.outcome(case, result)
+}
+
+/// The scene that a case begins with, as JSON with the texts of OBJ files for meshes; nothing is rendered.
+pub fn scene(case: &'static Case) -> Option<serde_json::Value> {
+    let mut truths = Truths::default();
+    let mut bench = bench::Bench::new(None, &mut truths);
+    // Without a renderer every case ends at its first scene.
+    let _ = (case.run)(&mut bench);
+    bench.into_scene()
 }

@@ -1,5 +1,7 @@
 //! What pictures are compared with: closed forms, the reference, other pictures.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Value, json};
 
 use super::bench::Bench;
@@ -8,6 +10,10 @@ use crate::accuracy::metrics;
 use crate::reference::closed_form::flat_water_irradiance;
 use crate::reference::{ReferenceSettings, irradiance_map};
 use crate::scene::Light;
+
+/// Reference maps that were computed already, by the hashes of their scenes: the same cases run again need no second one.
+#[derive(Debug, Default)]
+pub struct Truths(BTreeMap<String, Vec<[f64; 3]>>);
 
 /// Side of the maps, texels.
 pub(super) const SIDE: u32 = 32;
@@ -84,16 +90,21 @@ pub(super) fn flat_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Fai
 /// Relative L1 error of a floor map against the reference.
 pub(super) fn reference_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
     let resolved = bench.scene(scene)?;
-    let settings = ReferenceSettings {
-        target_error: Some(2e-3),
-        max_rays: 40_000_000,
-        initial_rays: 1 << 20,
-    };
-    let truth = irradiance_map(&resolved, &settings, &|_| {})
-        .map_err(|error| Failure::Check(format!("no reference: {error}")))?;
+    let hash = resolved.hash();
+    if !bench.truths.0.contains_key(&hash) {
+        let settings = ReferenceSettings {
+            target_error: Some(2e-3),
+            max_rays: 40_000_000,
+            initial_rays: 1 << 20,
+        };
+        let truth = irradiance_map(&resolved, &settings, &|_| {})
+            .map_err(|error| Failure::Check(format!("no reference: {error}")))?;
+        bench.truths.0.insert(hash.clone(), truth.irradiance);
+    }
     let frame = bench.render_resolved(&resolved)?;
     let found = super::bench::texels(&frame, crate::scene::LayerName::Irradiance);
-    metrics::relative_l1(found.as_flattened(), truth.irradiance.as_flattened())
+    let truth = &bench.truths.0[&hash];
+    metrics::relative_l1(found.as_flattened(), truth.as_flattened())
         .map_err(|error| Failure::Check(error.to_string()))
 }
 

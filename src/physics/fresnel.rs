@@ -1,22 +1,22 @@
 //! Fresnel reflection at a smooth boundary between dielectrics, unpolarised light.
 
-/// Reflectance R for incidence cosine `cos_i` in 0 … 1 and relative index `eta` = n_to / n_from.
+use super::refraction::refracted_square;
+
+/// Reflectance R for incidence cosine `cos_i` in 0 … 1 and relative index `eta` = n_to / n_from (1/4 … 4).
 ///
-/// R = ½ (r_s² + r_p²), r_s = (cos_i − η cos_t)/(cos_i + η cos_t), r_p = (η cos_i − cos_t)/(η cos_i + cos_t);
-/// 1 at total internal reflection. Source: Born & Wolf, Principles of Optics, 7th ed., §1.5.2, eq. 21.
+/// R = ½ (r_s² + r_p²), r_s = (cos_i − η cos_t)/(cos_i + η cos_t), r_p = (η cos_i − cos_t)/(η cos_i + cos_t); 1 at total internal
+/// reflection and along the boundary, else 0 for η = 1. Source: Born & Wolf, Principles of Optics, 7th ed., §1.5.2, eq. 21.
 pub fn fresnel_reflectance(cos_i: f64, eta: f64) -> f64 {
-    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
-    if sin2_t >= 1.0 {
+    let square = refracted_square(cos_i, eta);
+    if cos_i <= 0.0 || square < 0.0 {
         return 1.0;
     }
-    let cos_t = (1.0 - sin2_t).sqrt();
-    let s_sum = cos_i + eta * cos_t;
-    let p_sum = eta * cos_i + cos_t;
-    if s_sum <= 0.0 || p_sum <= 0.0 {
-        return 1.0;
+    if eta == 1.0 {
+        return 0.0;
     }
-    let r_s = (cos_i - eta * cos_t) / s_sum;
-    let r_p = (eta * cos_i - cos_t) / p_sum;
+    let cos_t = square.sqrt() / eta;
+    let r_s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    let r_p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     0.5 * (r_s * r_s + r_p * r_p)
 }
 
@@ -24,11 +24,14 @@ pub fn fresnel_reflectance(cos_i: f64, eta: f64) -> f64 {
 ///
 /// T = ½ · 4 η cos_i cos_t · (1/(cos_i + η cos_t)² + 1/(η cos_i + cos_t)²). Source: as [`fresnel_reflectance`], eq. 22.
 pub fn fresnel_transmittance(cos_i: f64, eta: f64) -> f64 {
-    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
-    if sin2_t >= 1.0 || cos_i <= 0.0 {
+    let square = refracted_square(cos_i, eta);
+    if cos_i <= 0.0 || square < 0.0 {
         return 0.0;
     }
-    let cos_t = (1.0 - sin2_t).sqrt();
+    if eta == 1.0 {
+        return 1.0;
+    }
+    let cos_t = square.sqrt() / eta;
     let s_sum = cos_i + eta * cos_t;
     let p_sum = eta * cos_i + cos_t;
     2.0 * eta * cos_i * cos_t * (1.0 / (s_sum * s_sum) + 1.0 / (p_sum * p_sum))

@@ -2,17 +2,23 @@
 
 use glam::DVec3;
 
+/// (η cos θ_t)² = (η − 1)(η + 1) + cos² θ_i for incidence cosine `cos_i` (0 … 1) and `eta` = n_to / n_from: no digit is lost where η
+/// is near 1 or light grazes. Below 0 at total internal reflection. Source: Snell's law, sin θ_i = η sin θ_t, squared.
+pub fn refracted_square(cos_i: f64, eta: f64) -> f64 {
+    (eta - 1.0) * (eta + 1.0) + cos_i * cos_i
+}
+
 /// Refracted unit direction of unit `direction` at unit `normal` (against the direction), `eta` = n_to / n_from.
 ///
 /// t = d/η + (cos_i/η − cos_t) n. `None` at total internal reflection. Source: Heckbert, "Writing a Ray Tracer", in
 /// Glassner (ed.), An Introduction to Ray Tracing (1989), §4.
 pub fn refract_direction(direction: DVec3, normal: DVec3, eta: f64) -> Option<DVec3> {
     let cos_i = -direction.dot(normal);
-    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
-    if sin2_t >= 1.0 {
+    let square = refracted_square(cos_i, eta);
+    if square < 0.0 {
         return None;
     }
-    let cos_t = (1.0 - sin2_t).sqrt();
+    let cos_t = square.sqrt() / eta;
     Some((direction / eta + normal * (cos_i / eta - cos_t)).normalize())
 }
 

@@ -25,7 +25,7 @@ pub fn sky_irradiance(
 }
 
 /// Irradiance from an evenly bright cone around the zenith on a plane whose unit normal has the upward component `normal_y`, as
-/// a share of that on a horizontal one; `sin2_cone` (above 0, at most 1) is the square of the sine of the cone's half angle.
+/// a share of that on a horizontal one; `sin2_cone` (1/16 … 1: indices up to 4) is the square of the sine of the cone's half angle.
 ///
 /// n_y while the plane sees all of the cone, 0 when it sees none; between, with σ the half angle, x = cot σ, s = sin θ,
 /// y = −x n_y / s: ((n_y acos y − x s √(1−y²)) sin²σ + atan2(s √(1−y²), x)) / (π sin²σ). The hemisphere, sin²σ = 1, gives
@@ -38,7 +38,7 @@ pub fn cone_share(normal_y: f64, sin2_cone: f64) -> f64 {
     if normal_y <= -sin_cone {
         return 0.0;
     }
-    let x = (1.0 / sin2_cone - 1.0).max(0.0).sqrt();
+    let x = ((1.0 - sin2_cone) / sin2_cone).sqrt();
     let sin_tilt = (1.0 - normal_y * normal_y).max(0.0).sqrt();
     let y = (-x * normal_y / sin_tilt).clamp(-1.0, 1.0);
     let reach = sin_tilt * (1.0 - y * y).max(0.0).sqrt();

@@ -8,10 +8,15 @@ pub fn plane_depth(s_min: f64, s_max: f64, planes: f64, index: f64) -> f64 {
 }
 
 /// The plane whose acceptance interval holds depth `s`: within ε = half the distance of two planes, 0 … `planes` − 1. Intervals are
-/// half open, so that each depth has one plane; what lies beyond the outermost planes is theirs.
+/// half open, so that each depth has one plane; what lies beyond the outermost planes is theirs. Planes that all lie at one depth
+/// (`s_max` − `s_min` below 10⁻³⁰) are as good as the first.
 ///
 /// Source: Tipprasert 2006, eq. 4-15.
 pub fn plane_of_depth(s_min: f64, s_max: f64, planes: f64, s: f64) -> f64 {
-    let halves = ((s - s_min) * (2.0 * (planes - 1.0) / (s_max - s_min))).floor();
+    let extent = s_max - s_min;
+    if extent < 1e-30 {
+        return 0.0;
+    }
+    let halves = ((s - s_min) / extent * (2.0 * (planes - 1.0))).floor();
     (0.5 * halves + 0.5).floor().clamp(0.0, planes - 1.0)
 }

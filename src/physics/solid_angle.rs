@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-/// Angle of the point (x, y) against the x axis, rad, −π … π; 0 at the origin.
+/// Angle of the point (x, y) against the x axis, rad, above −π, at most π; 0 at the origin. The sign of zeros does not matter.
 pub fn point_angle(y: f64, x: f64) -> f64 {
-    y.atan2(x)
+    // Adding 0 makes −0 into 0.
+    (y + 0.0).atan2(x + 0.0)
 }
 
 /// Solid angle of the triangle with corners `a`, `a + ab`, `a + ac`, seen from the origin, sr, −2π … 2π.

@@ -33,7 +33,7 @@ use crate::stats::{
 };
 use crate::tuning::Calibration;
 
-pub use self_check::{SelfCheck, SelfCheckItem, twin_error};
+pub use self_check::{SelfCheck, SelfCheckItem, TwinError, twin_error};
 
 /// Why there is no frame.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -52,7 +52,7 @@ impl Renderer {
         let mut checks = Vec::new();
         for twin in registry::all() {
             let error = twin_error(&self.gpu, &self.sources, twin, SAMPLES)?;
-            checks.push(item(format!("formula {}", twin.name), error, 1.0));
+            checks.push(item(format!("formula {}", twin.name), error.share, 1.0));
         }
         checks.push(item(
             "scene: flat water, irradiance".to_owned(),
@@ -151,7 +151,16 @@ fn small_scene(waves: &str) -> ResolvedScene {
     }
 }
 
-/// Largest error of a twin's f32 half over its domain, as a share of what its tolerance allows.
+/// The worst of a twin's f32 half over its domain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwinError {
+    /// Error as a share of what the tolerance allows; infinite for what is no number.
+    pub share: f64,
+    /// Where.
+    pub arguments: [f64; 8],
+}
+
+/// Largest error of a twin's f32 half over its domain, and where.
 ///
 /// # Errors
 /// When the GPU fails or the shader does not compile.
@@ -160,23 +169,17 @@ pub fn twin_error(
     sources: &ShaderSources,
     twin: &registry::Twin,
     samples: usize,
-) -> Result<f64, GpuError> {
-    let inputs: Vec<([f64; 8], [f64; 4])> = registry::samples(twin, samples)
-        .into_iter()
-        .filter_map(|args| (twin.original)(&args[..twin.domain.len()]).map(|truth| (args, truth)))
-        .collect();
+) -> Result<TwinError, GpuError> {
+    let inputs = registry::samples(twin, samples);
     let outputs = run_twin(gpu, sources, twin, &inputs)?;
-    let mut worst: f64 = 0.0;
-    for ((_, truth), found) in inputs.iter().zip(&outputs) {
-        for (truth, found) in truth.iter().zip(found) {
-            let allowed = twin.tolerance.absolute + twin.tolerance.relative * truth.abs();
-            let error = (f64::from(*found) - truth).abs() / allowed;
-            // NaN never passes.
-            worst = if error.is_nan() {
-                f64::INFINITY
-            } else {
-                worst.max(if allowed > 0.0 { error } else { 0.0 })
-            };
+    let mut worst = TwinError {
+        share: 0.0,
+        arguments: [0.0; 8],
+    };
+    for (&arguments, &found) in inputs.iter().zip(&outputs) {
+        let share = twin.error(&arguments[..twin.domain.len()], found);
+        if share > worst.share {
+            worst = TwinError { share, arguments };
         }
     }
     Ok(worst)
@@ -186,16 +189,9 @@ fn run_twin(
     gpu: &GpuContext,
     sources: &ShaderSources,
     twin: &registry::Twin,
-    inputs: &[([f64; 8], [f64; 4])],
+    inputs: &[[f64; 8]],
 ) -> Result<Vec<[f32; 4]>, GpuError> {
-    let mut imports = vec!["lib/turns.wgsl", "lib/refraction.wgsl"];
-    if !imports.contains(&twin.file) {
-        imports.push(twin.file);
-    }
-    let mut text = String::new();
-    for import in imports {
-        text.push_str(&sources.assemble(import)?);
-    }
+    let mut text = sources.assemble_all(&["lib/turns.wgsl", "lib/refraction.wgsl", twin.file])?;
     text.push_str(registry::CALL_PRELUDE);
     text.push_str(&format!(
         "@group(0) @binding(0) var<storage, read> arguments: array<array<f32, 8>>;
@@ -208,10 +204,7 @@ fn run_twin(
         twin.call
     ));
     let kernel = Kernel::from_text(gpu, twin.file, text, "twin_main", &[])?;
-    let arguments: Vec<[f32; 8]> = inputs
-        .iter()
-        .map(|(args, _)| args.map(|a| a as f32))
-        .collect();
+    let arguments: Vec<[f32; 8]> = inputs.iter().map(|args| args.map(|a| a as f32)).collect();
     let buffer = |label, bytes: u64| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),

@@ -15,6 +15,9 @@ mod cli_program;
 mod cli_scene_file;
 mod experiment;
 mod folder;
+mod fuzz_cases;
+#[path = "../../fuzz/checks/mod.rs"]
+mod fuzz_checks;
 mod image_exr;
 mod image_metadata;
 mod image_png;
@@ -47,6 +50,8 @@ mod scene_resolve;
 mod scene_shapes;
 mod scene_validate;
 mod shader_constants;
+#[path = "../../examples/mutants/shader_plants.rs"]
+mod shader_plants;
 mod shaders;
 #[path = "../support/synthetic_study.rs"]
 mod synthetic_study;

@@ -1,8 +1,11 @@
-//! The plants of `make mutants` fit the sources and the tests as they are.
+//! The plants of `make mutants` fit the sources, the tests and the hard cases as they are.
 
 use std::path::Path;
 
-use super::plants;
+use caustica::hard_cases;
+use caustica::passes::shaders;
+
+use super::{plants, shader_plants};
 
 fn text(path: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
@@ -16,13 +19,28 @@ fn every_plant_stands_in_its_file_once_and_changes_it() {
         let count = source.matches(plant.from).count();
         assert_eq!(count, 1, "{} in {}", plant.from, plant.file);
         assert_ne!(plant.from, plant.to, "{}", plant.what);
-        assert!(!plant.what.is_empty());
+    }
+    let sources = shaders::embedded();
+    for plant in shader_plants::ALL {
+        let source = sources
+            .text(plant.file)
+            .unwrap_or_else(|| panic!("there is no {}", plant.file));
+        let count = source.matches(plant.from).count();
+        assert_eq!(count, 1, "{} in {}", plant.from, plant.file);
+        assert_ne!(plant.from, plant.to, "{}", plant.what);
     }
     // Two plants of one description could not be told apart.
-    let mut names: Vec<&str> = plants::ALL.iter().map(|plant| plant.what).collect();
+    let in_shaders = shader_plants::ALL.iter().map(|plant| plant.what);
+    let mut names: Vec<&str> = plants::ALL
+        .iter()
+        .map(|plant| plant.what)
+        .chain(in_shaders)
+        .collect();
+    let count = names.len();
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), plants::ALL.len());
+    assert_eq!(names.len(), count);
+    assert!(names.iter().all(|name| !name.is_empty()));
 }
 
 #[test]
@@ -31,6 +49,12 @@ fn every_plant_has_tests_that_exist() {
         assert!(["cpu", "gpu"].contains(&plant.binary), "{}", plant.what);
         assert!(!plant.tests.is_empty(), "{}", plant.what);
         for test in plant.tests {
+            if let Some(case) = test.strip_prefix("hard_cases::") {
+                assert_eq!(plant.binary, "gpu", "{}", plant.what);
+                let (family, name) = case.split_once("::").expect("family::case");
+                is_a_case(family, name);
+                continue;
+            }
             let (module, name) = test.split_once("::").expect("file::name");
             let source = text(&format!("tests/{}/{module}.rs", plant.binary));
             assert!(
@@ -39,12 +63,34 @@ fn every_plant_has_tests_that_exist() {
             );
         }
     }
+    for plant in shader_plants::ALL {
+        assert!(!plant.cases.is_empty(), "{}", plant.what);
+        for case in plant.cases {
+            is_a_case(plant.family, case);
+        }
+    }
+}
+
+/// A hard case that can notice something: it is not known to fail.
+fn is_a_case(family: &str, name: &str) {
+    let case = hard_cases::find(name).unwrap_or_else(|| panic!("there is no case {name}"));
+    assert_eq!(case.family.name(), family, "{name}");
+    assert_eq!(case.known_failure, None, "{name}");
 }
 
 #[test]
-fn reference_shaders_metrics_and_choices_are_all_planted() {
-    for folder in ["src/reference/", "src/accuracy/", "src/tuning/", "shaders/"] {
+fn reference_metrics_choices_and_every_family_are_planted() {
+    for folder in [
+        "src/reference/",
+        "src/accuracy/",
+        "src/tuning/",
+        "src/waves/",
+    ] {
         let planted = plants::ALL.iter().filter(|p| p.file.starts_with(folder));
         assert!(planted.count() > 0, "nothing is planted in {folder}");
+    }
+    for family in ["light", "water", "place", "mesh", "fold", "camera"] {
+        let planted = shader_plants::ALL.iter().filter(|p| p.family == family);
+        assert!(planted.count() > 0, "nothing is planted for {family}");
     }
 }

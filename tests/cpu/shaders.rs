@@ -186,7 +186,9 @@ fn every_formula_has_a_twin_and_every_twin_a_formula() {
     for path in sources.paths().filter(|path| path.starts_with("lib/")) {
         for (_, function) in module(path).ir.functions.iter() {
             let name = function.name.clone().unwrap_or_default();
-            assert!(in_shaders.insert((path.to_owned(), name)));
+            // Those of imported files have their row there.
+            let is_own = sources.text(path).unwrap().contains(&format!("fn {name}("));
+            assert!(!is_own || in_shaders.insert((path.to_owned(), name)));
         }
     }
     let in_registry: BTreeSet<(String, String)> = registry::all()
@@ -197,7 +199,14 @@ fn every_formula_has_a_twin_and_every_twin_a_formula() {
     for twin in registry::all() {
         assert!(twin.call.contains(twin.name), "{}", twin.name);
         assert!(twin.domain.len() <= 8, "{}", twin.name);
-        assert!(!twin.tolerance.reason.is_empty(), "{}", twin.name);
+        let reason = twin.tolerance.reason;
+        assert!(
+            ["derived", "measured"]
+                .iter()
+                .any(|word| reason.starts_with(word)),
+            "{}: {reason}",
+            twin.name
+        );
     }
 }
 

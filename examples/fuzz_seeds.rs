@@ -1,0 +1,83 @@
+//! Writes what fuzzing begins with: the project's scenes, the scenes of the hard cases, and meshes; `make fuzz` runs it.
+//!
+//! Usage: `fuzz_seeds FOLDER`; files go to `FOLDER/scene` and `FOLDER/obj`.
+
+use std::error::Error;
+use std::path::Path;
+
+use caustica::hard_cases;
+use serde_json::Value;
+
+/// Larger seeds make every try slow.
+const MOST_BYTES: usize = 16 << 10;
+
+/// What OBJ files have besides plain triangles.
+const OBJS: [(&str, &str); 6] = [
+    ("relative", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n"),
+    (
+        "normals",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nf 1/1/1 2/1/1 3/1/1\nf 3//1 2//1 1//1\n",
+    ),
+    (
+        "polygon",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0.5 0.2 0\nv 0 1 0\nf 1 2 3 4 5\n",
+    ),
+    (
+        "broken",
+        "# all that is mended\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1e-30 0 0\nf 1 1 2\nf 1 2 3\nf 2 3 1\nf 1 2\nf 1 4 2\nl 1 2\ns off\n",
+    ),
+    (
+        "numbers",
+        "v 1e6 -1e-6 .5 1.0\nv 1e6 1 0\nv 1000001 0 +0\nvn 0 0 0\nvn 1e300 0 1e-300\nf 1//1 2//2 3//1 \\\n",
+    ),
+    (
+        "materials",
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl none\nf 3 2 1\nusemtl red\n\0newmtl red\nKd 0.8 0.1 2\nnewmtl blue\nmap_Kd a.png\nKd 1\n",
+    ),
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = std::env::args().nth(1).ok_or("usage: fuzz_seeds FOLDER")?;
+    let (scenes, objs) = (
+        Path::new(&folder).join("scene"),
+        Path::new(&folder).join("obj"),
+    );
+    std::fs::create_dir_all(&scenes)?;
+    std::fs::create_dir_all(&objs)?;
+    for entry in std::fs::read_dir("scenes")? {
+        let path = entry?.path();
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "json")
+        {
+            std::fs::copy(&path, scenes.join(entry_name(&path)))?;
+        }
+    }
+    for case in hard_cases::all() {
+        let Some(mut scene) = hard_cases::scene(case) else {
+            continue;
+        };
+        for (index, object) in scene["objects"]
+            .as_array_mut()
+            .into_iter()
+            .flatten()
+            .enumerate()
+        {
+            let mesh = object["mesh"].as_str().unwrap_or_default();
+            if mesh.len() <= MOST_BYTES {
+                std::fs::write(objs.join(format!("{}_{index}", case.name)), mesh)?;
+            }
+            object["mesh"] = Value::from("a_mesh");
+        }
+        std::fs::write(scenes.join(case.name), serde_json::to_vec(&scene)?)?;
+    }
+    for (name, text) in OBJS {
+        std::fs::write(objs.join(name), text)?;
+    }
+    std::fs::copy("scenes/meshes/box.obj", objs.join("box"))?;
+    Ok(())
+}
+
+fn entry_name(path: &Path) -> &std::ffi::OsStr {
+    path.file_name().unwrap_or_default()
+}

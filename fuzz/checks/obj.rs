@@ -1,0 +1,80 @@
+//! Any bytes as an OBJ, and behind a zero byte an MTL.
+
+use caustica::config::Limits;
+use caustica::mesh::hierarchy::LEAF;
+use caustica::mesh::{Mesh, obj};
+
+/// Triangles that are read at most: large meshes say nothing that small ones do not.
+const MOST_TRIANGLES: usize = 4096;
+/// How far the length of a normal may be from 1.
+const NORMAL_TOLERANCE: f32 = 1e-5;
+
+/// Reads `bytes`; what is accepted must be sound, what is refused must say why.
+pub(crate) fn check(bytes: &[u8]) {
+    let mut parts = bytes.splitn(2, |byte| *byte == 0);
+    let text = parts.next().unwrap_or_default();
+    let mtl = parts.next();
+    let limits = Limits {
+        max_triangles: MOST_TRIANGLES,
+        ..Limits::default()
+    };
+    match obj::read(text, mtl, &limits) {
+        Ok(mesh) => sound(&mesh),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}
+
+/// What the renderer relies on.
+fn sound(mesh: &Mesh) {
+    assert!(!mesh.triangles.is_empty() && mesh.triangles.len() <= MOST_TRIANGLES);
+    assert!(!mesh.materials.is_empty());
+    assert!(mesh.origin_m.is_finite() && mesh.min_m.is_finite() && mesh.max_m.is_finite());
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.positions_m;
+        for p in [a, b, c] {
+            assert!(p.is_finite());
+            assert!(
+                p.cmpge(mesh.min_m).all() && p.cmple(mesh.max_m).all(),
+                "{p} is out of bounds"
+            );
+        }
+        let area = (b - a).as_dvec3().cross((c - a).as_dvec3()).length();
+        assert!(area > 0.0, "a degenerate triangle was kept");
+        for normal in triangle.normals {
+            let off = (normal.length() - 1.0).abs();
+            assert!(
+                off <= NORMAL_TOLERANCE,
+                "the normal {normal} is off by {off}"
+            );
+        }
+        assert!((triangle.material as usize) < mesh.materials.len());
+    }
+    for material in &mesh.materials {
+        assert!(
+            material.albedo.iter().all(|v| (0.0..=1.0).contains(v)),
+            "{material:?}"
+        );
+    }
+    for warning in &mesh.warnings {
+        assert!(!warning.code.is_empty() && !warning.message.is_empty());
+    }
+    every_triangle_has_its_leaf(mesh);
+}
+
+/// A walk that meets every box ends, and comes to every triangle once.
+fn every_triangle_has_its_leaf(mesh: &Mesh) {
+    let mut met = vec![0_u32; mesh.triangles.len()];
+    let mut at = 0;
+    while let Some(node) = mesh.hierarchy.get(at) {
+        let next = if node.entry & LEAF == 0 {
+            node.entry
+        } else {
+            met[(node.entry & !LEAF) as usize] += 1;
+            node.exit
+        };
+        assert!(next as usize > at, "node {at} goes on at {next}");
+        at = next as usize;
+    }
+    assert_eq!(at, mesh.hierarchy.len());
+    assert!(met.iter().all(|count| *count == 1), "{met:?}");
+}

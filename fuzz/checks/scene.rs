@@ -1,0 +1,76 @@
+//! Any bytes as a scene, as far as it goes without a GPU: read, checked, resolved, its facts, its plan.
+
+use std::sync::{Arc, OnceLock};
+
+use caustica::config::Limits;
+use caustica::mesh::{Mesh, obj};
+use caustica::plan::{self, NothingCached, WarmCache};
+use caustica::scene::facts::SceneFacts;
+use caustica::scene::{Scene, SceneError, resolve};
+
+/// The mesh of every object: a tetrahedron.
+const MESH: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+
+/// Reads `bytes`; what is accepted must have a finite plan, what is refused must say where, what and what instead.
+pub(crate) fn check(bytes: &[u8]) {
+    let scene = match Scene::from_json(bytes) {
+        Ok(scene) => scene,
+        Err(error) => return says_why(&error),
+    };
+    reads_back(&scene);
+    let resolved = match resolve(scene, &Limits::default(), |_| Some(mesh())) {
+        Ok(resolved) => resolved,
+        Err(error) => return says_why(&error),
+    };
+    let facts = match SceneFacts::of(&resolved) {
+        Ok(facts) => facts,
+        Err(error) => return says_why(&error),
+    };
+    let text = format!("{facts:?}");
+    assert!(!text.contains("NaN"), "{text}");
+    let cold = NothingCached {
+        arena_bytes: 64 << 20,
+    };
+    let planned = [
+        plan::plan_scene(&facts, &cold),
+        plan::plan_scene(&facts, &WarmCache),
+    ];
+    for plan in planned {
+        let plan = plan.unwrap_or_else(|error| panic!("{error}"));
+        let held = plan.slots.iter().map(|slot| slot.bytes).max();
+        assert!(plan.peak_bytes >= held.unwrap_or_default());
+        let reasons = plan.passes.iter().map(|pass| &pass.reason);
+        let absences = plan.absent.iter().map(|pass| &pass.reason);
+        assert!(reasons.chain(absences).all(|reason| !reason.is_empty()));
+    }
+}
+
+/// What was read is written, and reads as the same.
+fn reads_back(scene: &Scene) {
+    let written = serde_json::to_vec(scene).unwrap_or_else(|error| panic!("{error}"));
+    match Scene::from_json(&written) {
+        Ok(again) => assert_eq!(&again, scene),
+        Err(error) => panic!("what was written is refused: {error}"),
+    }
+}
+
+fn says_why(error: &SceneError) {
+    assert!(!error.issues.is_empty());
+    for issue in &error.issues {
+        let is_pointer = issue.pointer.is_empty() || issue.pointer.starts_with('/');
+        assert!(is_pointer, "{issue:?}");
+        assert!(
+            !issue.detail.is_empty() && !issue.accepted.is_empty(),
+            "{issue:?}"
+        );
+    }
+}
+
+fn mesh() -> Arc<Mesh> {
+    static SHARED: OnceLock<Arc<Mesh>> = OnceLock::new();
+    let read = || match obj::read(MESH, None, &Limits::default()) {
+        Ok(mesh) => Arc::new(mesh),
+        Err(error) => panic!("{error}"),
+    };
+    Arc::clone(SHARED.get_or_init(read))
+}

@@ -1,0 +1,7 @@
+//! Any bytes as an OBJ, and behind a zero byte an MTL.
+#![no_main]
+
+#[path = "../checks/obj.rs"]
+mod obj;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| obj::check(bytes));

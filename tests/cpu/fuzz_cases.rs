@@ -1,0 +1,45 @@
+//! What fuzzing has found, and what it begins with: the checks of the fuzz targets hold for all of it.
+
+use std::path::Path;
+
+use caustica::hard_cases;
+use serde_json::Value;
+
+use super::fuzz_checks;
+
+/// Runs `check` on every file of a folder of `fuzz/regressions`, and counts them.
+fn replay(folder: &str, check: fn(&[u8])) -> usize {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("fuzz/regressions")
+        .join(folder);
+    let mut count = 0;
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        println!("{}", path.display());
+        check(&std::fs::read(&path).unwrap());
+        count += 1;
+    }
+    count
+}
+
+#[test]
+fn scenes_that_fuzzing_has_found_are_read_or_refused() {
+    assert!(replay("scene", fuzz_checks::scene::check) > 0);
+}
+
+#[test]
+fn meshes_that_fuzzing_has_found_are_read_or_refused() {
+    assert!(replay("obj", fuzz_checks::obj::check) > 0);
+}
+
+#[test]
+fn the_hard_cases_have_scenes_to_begin_with() {
+    for case in hard_cases::all() {
+        let mut scene = hard_cases::scene(case).unwrap_or_else(|| panic!("{} has none", case.name));
+        for object in scene["objects"].as_array_mut().into_iter().flatten() {
+            fuzz_checks::obj::check(object["mesh"].as_str().unwrap().as_bytes());
+            object["mesh"] = Value::from("a_mesh");
+        }
+        fuzz_checks::scene::check(scene.to_string().as_bytes());
+    }
+}
