@@ -8,12 +8,14 @@
 #import "shared/level_maps.wgsl"
 #import "shared/reference_planes.wgsl"
 
-// Per object: planes that are used, pieces of the box they make, two words unused, then the planes in order, then texels per level.
+// Per object: planes that are used, pieces of the box they make, two words unused, then the planes in order, then texels per level,
+// then per tile of TILE² texels the first and the last plane that accept one of its texels, in 16 bits each.
 @group(0) @binding(18) var<storage, read_write> plane_lists: array<atomic<u32>>;
 
 const LIST_HEAD: u32 = 4u;
 const MOST_PLANES: u32 = 1024u;
 const TEXELS_EACH: u32 = 16u;
+const TILE: u32 = 4u;
 
 var<workgroup> counts: array<atomic<u32>, MOST_PLANES>;
 
@@ -53,4 +55,23 @@ fn profile_compact() {
     }
     atomicStore(&plane_lists[planes.list], used);
     atomicStore(&plane_lists[planes.list + 1u], pieces);
+}
+
+// The planes near each tile, one invocation per tile: beams are tried with no others.
+@compute @workgroup_size(8, 8)
+fn profile_tiles(@builtin(global_invocation_id) id: vec3u) {
+    let r = receivers[planes.receiver];
+    let side = r.map_width / TILE;
+    if id.x >= side || id.y >= side { return; }
+    var first = MOST_PLANES;
+    var last = 0u;
+    for (var i = 0u; i < TILE * TILE; i++) {
+        let plane = plane_of_texel(r, vec2i(TILE * id.xy + vec2u(i % TILE, i / TILE)));
+        if plane >= 0 {
+            first = min(first, u32(plane));
+            last = max(last, u32(plane));
+        }
+    }
+    let tile = planes.list + LIST_HEAD + 2u * planes.planes + id.y * side + id.x;
+    atomicStore(&plane_lists[tile], first | (last << 16u));
 }

@@ -56,7 +56,7 @@ fn slice_fragment(in: SliceVertex) -> @location(0) vec4f {
 
 @compute @workgroup_size(1)
 fn volumetric_share_out() {
-    share_out(1u);
+    share_out(1u, 1u);
     plane_counts[planes.object] = vec4u(kept_beams(), planes.planes, 1u, atomicLoad(&beam_queue[WIDE_COUNT]));
 }
 
@@ -72,7 +72,7 @@ fn volumetric_deposit(@builtin(workgroup_id) group: vec3u, @builtin(num_workgrou
     let count = atomicLoad(&beam_queue[NARROW_COUNT]);
     for (var item = group.x * CULL_GROUP + invocation; item < count; item += groups.x * CULL_GROUP) {
         let b = narrow_beam(item);
-        let c = cross_plane(b, r, s);
+        let c = cross_plane(map_rays(b, r), r, s);
         if !c.meets { continue; }
         deposit_triangle(caustics_map(r), c.uv[0], c.uv[1], c.uv[2], b.transmitted * mean_transmission(c.t));
     }
@@ -86,7 +86,7 @@ fn volumetric_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups)
     let lane = group.z * 64u + invocation;
     for (var item = group.x; item < count; item += groups.x) {
         let b = wide_beam(item);
-        let c = cross_plane(b, r, s);
+        let c = cross_plane(map_rays(b, r), r, s);
         if !c.meets { continue; }
         let arriving = b.transmitted * mean_transmission(c.t);
         if is_segment(c.uv[0], c.uv[1], c.uv[2]) {

@@ -20,13 +20,28 @@ struct Crossing {
     meets: bool,  // all rays go down through it, under water
 }
 
-fn cross_plane(b: Beam, r: Receiver, s: f32) -> Crossing {
+// A beam's rays in the map space of a receiver.
+struct MapRays {
+    origin: mat3x3f,
+    direction: mat3x3f,
+}
+
+fn map_rays(b: Beam, r: Receiver) -> MapRays {
+    var rays: MapRays;
+    for (var k = 0; k < 3; k++) {
+        rays.origin[k] = to_map(r, b.origin[k]);
+        rays.direction[k] = direction_to_map(r, b.direction[k]);
+    }
+    return rays;
+}
+
+fn cross_plane(rays: MapRays, r: Receiver, s: f32) -> Crossing {
     var c: Crossing;
     c.meets = true;
     var sum = 0.0;
     for (var k = 0; k < 3; k++) {
-        let o = to_map(r, b.origin[k]);
-        let d = direction_to_map(r, b.direction[k]);
+        let o = rays.origin[k];
+        let d = rays.direction[k];
         let down = goes_down(r, d);
         let t = select(0.0, (s - o.z) / d.z, down);
         c.uv[k] = (o + d * t).xy;
@@ -45,8 +60,9 @@ fn cull_beam(cell: vec2u, half: u32) {
     let b = grid_rays(cell, half);
     if b.transmitted == 0.0 { return; }
     let r = receivers[planes.receiver];
-    let first = cross_plane(b, r, r.s_min);
-    let last = cross_plane(b, r, r.s_max);
+    let rays = map_rays(b, r);
+    let first = cross_plane(rays, r, r.s_min);
+    let last = cross_plane(rays, r, r.s_max);
     if !last.meets { return; }
     let low_first = min(first.uv[0], min(first.uv[1], first.uv[2]));
     let high_first = max(first.uv[0], max(first.uv[1], first.uv[2]));
@@ -78,15 +94,15 @@ fn kept_beams() -> u32 {
     return atomicLoad(&beam_queue[NARROW_COUNT]) + atomicLoad(&beam_queue[WIDE_COUNT]);
 }
 
-// The dispatches over the queue, with `plane_count` planes along y.
-fn share_out(plane_count: u32) {
+// The dispatches over the queue; along y as many groups of planes for narrow beams, and for wide ones.
+fn share_out(narrow_planes: u32, wide_planes: u32) {
     let narrow = atomicLoad(&beam_queue[NARROW_COUNT]);
     let wide = atomicLoad(&beam_queue[WIDE_COUNT]);
     atomicStore(&beam_queue[0], min((narrow + CULL_GROUP - 1u) / CULL_GROUP, MOST_CULL_GROUPS));
-    atomicStore(&beam_queue[1], plane_count);
+    atomicStore(&beam_queue[1], narrow_planes);
     atomicStore(&beam_queue[2], 1u);
     atomicStore(&beam_queue[4], min(wide, MOST_CULL_GROUPS));
-    atomicStore(&beam_queue[5], plane_count);
+    atomicStore(&beam_queue[5], wide_planes);
     atomicStore(&beam_queue[6], WIDE_GROUPS);
 }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::measure::Settings;
 use crate::accuracy::study::SpreadMs;
 use crate::stats::AdapterStats;
 
@@ -24,6 +25,23 @@ pub struct Experiment {
     pub memory: MemoryExample,
     /// One entry per shape.
     pub meshes: Vec<MeshResult>,
+}
+
+impl Experiment {
+    /// Whether this is what this version of the program finds with `settings`, up to its times.
+    pub fn is_of(&self, settings: &Settings) -> bool {
+        let names = self.meshes.iter().map(|mesh| &mesh.name);
+        let planes_of =
+            |mesh: &MeshResult| -> Vec<u32> { mesh.planes.iter().map(|p| p.planes).collect() };
+        self.version == env!("CARGO_PKG_VERSION")
+            && (self.water_cells, self.texels, self.runs)
+                == (settings.water_cells, settings.texels, settings.runs)
+            && names.eq(&settings.meshes)
+            && self
+                .meshes
+                .iter()
+                .all(|mesh| planes_of(mesh) == settings.planes)
+    }
 }
 
 /// The thesis's example of §5.1 in this program's formats: 100 objects of 512² texels and 100 planes each.

@@ -1,5 +1,5 @@
 //! Depth profile — which planes of an object are used: with smart slicing (Tipprasert 2006, §4.7.2) those whose acceptance interval
-//! holds a texel of the level map, otherwise all.
+//! holds a texel of the level map, otherwise all; and which of them come near the surface in each tile of the map.
 
 use super::desc::{Groups, PassDesc, Repeat, Run, Work};
 use super::plane_steps::{objects_of, plane_step, wanted_for_planes};
@@ -51,6 +51,8 @@ pub const PASS: PassDesc = PassDesc {
                 add("profile_count", [columns, groups.div_ceil(columns), 1]);
             }
             add("profile_compact", [1, 1, 1]);
+            let tiles = (texels / slot::PLANE_TILE_TEXELS).div_ceil(8);
+            add("profile_tiles", [tiles, tiles, 1]);
         }
         steps
     },

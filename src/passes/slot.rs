@@ -23,6 +23,8 @@ pub const WIDE_GROUPS: u32 = 16;
 pub const CULL_HEAD_WORDS: u64 = 8;
 /// Words at the head of an object's list of planes.
 pub const PLANE_LIST_HEAD_WORDS: u64 = 4;
+/// Texels along a side of the tiles that the list of planes knows the near planes of.
+pub const PLANE_TILE_TEXELS: u32 = 4;
 /// (low, high) pairs of the energy account, see `shaders/shared/flux.wgsl`.
 pub const ENERGY_TERMS: u64 = 16;
 /// Bytes a frame holds besides its slots: the empty list, queue heads, arguments of indirect dispatches.
@@ -221,7 +223,7 @@ impl Slot {
             ),
             Self::PlaneLists => (
                 "plane_lists",
-                "planes in use and texels near each plane, per object",
+                "planes in use, texels near each plane and planes near each tile, per object",
                 Lifetime::Sun,
             ),
             Self::PlaneCounts => (
@@ -380,9 +382,10 @@ pub fn flux_bytes(facts: &SceneFacts, wide_sums: bool) -> u64 {
     bytes * u64::from(facts.channels()) * (maps.flux_texels() + scratch)
 }
 
-/// Words of an object's list of planes: its head, the planes, and the texels near each.
+/// Words of an object's list of planes: its head, the planes, the texels near each, and the planes near each tile of its map.
 pub fn plane_list_words(facts: &SceneFacts) -> u64 {
-    PLANE_LIST_HEAD_WORDS + 2 * u64::from(facts.quality.planes)
+    let tiles = u64::from(facts.quality.level_map_texels / PLANE_TILE_TEXELS);
+    PLANE_LIST_HEAD_WORDS + 2 * u64::from(facts.quality.planes) + tiles * tiles
 }
 
 /// Bytes of the textures that a level map is drawn into.

@@ -87,6 +87,7 @@ fn figures_of_queues_and_maps_agree() {
     agrees("SPLIT_HEAD", slot::SPLIT_HEAD_WORDS as f64);
     agrees("CULL_HEAD", slot::CULL_HEAD_WORDS as f64);
     agrees("LIST_HEAD", slot::PLANE_LIST_HEAD_WORDS as f64);
+    agrees("TILE", f64::from(slot::PLANE_TILE_TEXELS));
     agrees("WIDE_GROUPS", f64::from(slot::WIDE_GROUPS));
     agrees("MOST_CULL_GROUPS", f64::from(slot::MOST_GROUPS));
     agrees("MOST_PLANES", f64::from(ranges::Planes::MAX));
