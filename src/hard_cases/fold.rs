@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::case::Family::Fold;
 use super::case::Case;
+use super::case::Family::Fold;
 use super::truths::{flat_error, largest_relative, pool, reference_error, sun, waves, with};
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";

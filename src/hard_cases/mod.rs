@@ -8,16 +8,20 @@
 //! - `bench`: rendering with the checks that hold for all;
 //! - `truths`: what pictures are compared with;
 //! - `page`: the suite as a document;
-//! - the families: `light`, `water`, `place`, `mesh`, `fold`, `camera`.
+//! - the families: `light` (and `lamp`), `water`, `place`, `mesh`, `fold`, `camera`, `machine` (with
+//!   `sabotage`: how to harm a device).
 
 mod bench;
 mod camera;
 pub mod case;
 mod fold;
+mod lamp;
 mod light;
+mod machine;
 mod mesh;
 pub mod page;
 mod place;
+mod sabotage;
 mod truths;
 mod water;
 
@@ -29,11 +33,13 @@ use crate::render::Renderer;
 pub fn all() -> impl Iterator<Item = &'static Case> {
     [
         light::CASES,
+        lamp::CASES,
         water::CASES,
         place::CASES,
         mesh::CASES,
         fold::CASES,
         camera::CASES,
+        machine::CASES,
     ]
     .into_iter()
     .flatten()
@@ -44,9 +50,32 @@ pub fn find(name: &str) -> Option<&'static Case> {
     all().find(|case| case.name == name)
 }
 
+/// How a suite is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Frames of the case that makes many, at least 10.
+    pub renders: u32,
+    /// Whether nothing else runs in this process: then its memory is the suite's.
+    pub is_alone: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            renders: 300,
+            is_alone: false,
+        }
+    }
+}
+
 /// Runs a case.
 pub fn run(case: &'static Case, renderer: &mut Renderer) -> Outcome {
-    let mut bench = bench::Bench::new(renderer);
+    run_with(case, renderer, Settings::default())
+}
+
+/// Runs a case as the settings say.
+pub fn run_with(case: &'static Case, renderer: &mut Renderer, settings: Settings) -> Outcome {
+    let mut bench = bench::Bench::new(renderer, settings);
     let result = (case.run)(&mut bench);
     bench.outcome(case, result)
 }
