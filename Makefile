@@ -11,7 +11,7 @@ export NODEVICE_SELECT ?= 1
 endif
 
 .DEFAULT_GOAL := build
-.PHONY: demo build test lint bench docs mutants fuzz fuzz-deps clean deps
+.PHONY: demo build test nightly lint bench docs mutants fuzz fuzz-deps clean deps
 
 # Render the example scene.
 demo: build
@@ -27,6 +27,10 @@ build: deps
 test: deps
 	$(CARGO) test --release --locked
 
+# Run all tests with many more random scenes and frames; some hours.
+nightly: deps
+	CAUSTICA_PROPERTY_CASES=2000 CAUSTICA_RENDERS=10000 $(CARGO) test --release --locked
+
 # Check formatting, and let no warning pass.
 lint: deps
 	$(CARGO) fmt --check
@@ -36,7 +40,7 @@ lint: deps
 bench: deps
 	$(CARGO) bench --locked --bench caustica
 
-# Measure what each dial buys, and write docs/accuracy.md and docs/level-maps.md; an hour or two on a quiet machine.
+# Measure what each dial buys, and write docs/accuracy.md, docs/level-maps.md and docs/hard-cases.md; an hour or two on a quiet machine.
 docs: deps
 	$(CARGO) run --release --locked --example make_docs
 

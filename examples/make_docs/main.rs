@@ -1,9 +1,10 @@
 //! Writes `docs/accuracy.md`: what each dial buys on the example scenes, measured by the program itself; and `docs/level-maps.md`:
-//! the thesis's experiments in our numbers. Names of scenes, or `level_maps`, do only those.
+//! the thesis's experiments in our numbers; and `docs/hard-cases.md`. Names of scenes, `level_maps` or `hard_cases` do only those.
 //!
 //! `make docs` runs it; truths are kept in `out/truth`, so a second run only renders. Times are those of the machine it runs on,
 //! which the page names.
 
+mod hard_cases;
 mod level_maps;
 mod page;
 mod scenes;
@@ -30,6 +31,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     if only.is_empty() || only.iter().any(|name| name == level_maps::NAME) {
         eprintln!("{} …", level_maps::NAME);
         level_maps::write()?;
+    }
+    if only.is_empty() || only.iter().any(|name| name == hard_cases::NAME) {
+        eprintln!("{} …", hard_cases::NAME);
+        hard_cases::write()?;
     }
     let wanted = |name: &str| only.is_empty() || only.iter().any(|o| o == name);
     for scene in scenes::ALL.iter().filter(|scene| wanted(scene.name)) {

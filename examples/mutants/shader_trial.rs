@@ -5,7 +5,7 @@ use std::error::Error;
 
 use caustica::config::RenderConfig;
 use caustica::gpu::shader::ShaderSources;
-use caustica::hard_cases::{self, Case, Truths};
+use caustica::hard_cases::{self, Case, Settings, Truths};
 use caustica::passes::shaders;
 use caustica::render::Renderer;
 
@@ -72,7 +72,7 @@ impl Bench {
     }
 
     fn holds(&mut self, case: &'static Case, renderer: &mut Renderer) -> bool {
-        let outcome = hard_cases::run_with(case, renderer, &mut self.truths);
+        let outcome = hard_cases::run_with(case, renderer, &mut self.truths, Settings::default());
         outcome.verdict.is_expected()
     }
 }

@@ -9,7 +9,7 @@ use super::error::CliError;
 use super::files;
 use super::summary::{adapter, columns};
 use crate::config::RenderConfig;
-use crate::hard_cases::{self, Case, Outcome, page};
+use crate::hard_cases::{self, Case, Outcome, Settings, Truths, page};
 use crate::render::Renderer;
 
 /// Which cases, and where to.
@@ -21,6 +21,9 @@ pub struct HardCasesArgs {
     /// Folder for the page (`hard-cases.md`) and its pictures; made if it is not there.
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
+    /// Frames of the case `thousands_of_small_renders`.
+    #[arg(long, env = "CAUSTICA_RENDERS", default_value_t = Settings::default().renders, value_name = "COUNT")]
+    pub renders: u32,
 }
 
 /// Runs the suite, prints a line for each case, and writes the page if asked to.
@@ -42,10 +45,20 @@ pub fn run(args: &HardCasesArgs, config: &RenderConfig) -> Result<(), CliError> 
     let on = adapter(&renderer.adapter());
     let progress = bar();
     let mut outcomes = Vec::new();
+    let mut truths = Truths::default();
+    let settings = Settings {
+        renders: args.renders,
+        is_alone: true,
+    };
     for (number, case) in cases.iter().copied().enumerate() {
         progress.set_position((1000 * number / cases.len()) as u64);
         progress.set_message(case.name);
-        outcomes.push(hard_cases::run(case, &mut renderer));
+        outcomes.push(hard_cases::run_with(
+            case,
+            &mut renderer,
+            &mut truths,
+            settings,
+        ));
     }
     progress.finish_and_clear();
     files::print(&format!("{on}\n{}", in_words(&outcomes)))?;

@@ -128,6 +128,13 @@ impl GpuContext {
         }
     }
 
+    /// Frees what a frame that failed has left, and forgets what else went wrong in it: errors of what it made of a first error
+    /// are not the next frame's. A loss is not forgotten.
+    pub fn forget_errors(&self) {
+        self.tidy();
+        lock(&self.errors).first = None;
+    }
+
     /// Lets wgpu free what is no longer used; to be called also when idle.
     pub fn tidy(&self) {
         // The result only says whether the queue is empty.
@@ -169,9 +176,9 @@ fn wanted_limits(adapter: &wgpu::Limits, software: bool) -> wgpu::Limits {
     let baseline = wgpu::Limits::default();
     let storage_buffers = baseline.max_storage_buffers_per_shader_stage;
     wgpu::Limits {
-        // Eight, and on a CPU driver the uniforms: see `GpuContext::adapt`.
+        // Eight, and on a CPU driver the uniforms, with that of pieces: see `GpuContext::adapt`.
         max_storage_buffers_per_shader_stage: if software {
-            storage_buffers + 4
+            storage_buffers + 5
         } else {
             storage_buffers
         },

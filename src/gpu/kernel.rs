@@ -32,6 +32,22 @@ impl Kernel {
         Self::from_text(gpu, path, sources.assemble(path)?, entry, constants)
     }
 
+    /// The same for an entry point that runs in pieces and is told which: see [`super::pieces`].
+    ///
+    /// # Errors
+    /// As [`Self::new`], and when the entry point cannot be cut.
+    pub fn in_pieces(
+        gpu: &GpuContext,
+        sources: &ShaderSources,
+        path: &str,
+        entry: &str,
+        constants: &[(&'static str, f64)],
+    ) -> Result<Self, GpuError> {
+        let module = Module::parse(path, sources.assemble(path)?)?;
+        let text = super::pieces::told_its_piece(&module, path, entry)?;
+        Self::from_text(gpu, path, text, entry, constants)
+    }
+
     /// The same from assembled WGSL; `path` is for messages.
     ///
     /// # Errors

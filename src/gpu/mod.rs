@@ -2,6 +2,7 @@
 
 pub mod context;
 pub mod kernel;
+pub mod pieces;
 pub mod pool;
 pub mod readback;
 pub mod shader;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 use tokio_util::sync::CancellationToken;
 
+use super::Settings;
 use super::case::{Case, Failure, Outcome, Verdict};
 use super::truths::Truths;
 use crate::config::Limits;
@@ -12,6 +13,7 @@ use crate::frame::Frame;
 use crate::mesh::{Mesh, MeshStore};
 use crate::render::{RenderError, Renderer};
 use crate::scene::{LayerName, ResolvedScene, Scene, SceneError, resolve};
+use crate::stats::Stats;
 
 /// Most that an energy account may be open by.
 const MOST_CLOSURE: f64 = 1e-5;
@@ -23,6 +25,7 @@ pub struct Bench<'a> {
     renderer: Option<&'a mut Renderer>,
     pub(super) truths: &'a mut Truths,
     scene: Option<Value>,
+    settings: Settings,
     meshes: MeshStore,
     closure: f64,
     warnings: BTreeMap<String, Option<f64>>,
@@ -30,11 +33,16 @@ pub struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    pub(super) fn new(renderer: Option<&'a mut Renderer>, truths: &'a mut Truths) -> Self {
+    pub(super) fn new(
+        renderer: Option<&'a mut Renderer>,
+        truths: &'a mut Truths,
+        settings: Settings,
+    ) -> Self {
         Self {
             renderer,
             truths,
             scene: None,
+            settings,
             meshes: MeshStore::default(),
             closure: 0.0,
             warnings: BTreeMap::new(),
@@ -45,6 +53,15 @@ impl<'a> Bench<'a> {
     /// The scene that the case began with.
     pub(super) fn into_scene(self) -> Option<Value> {
         self.scene
+    }
+
+    pub(super) fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    /// The renderer, for what is not just rendering a scene.
+    pub(super) fn renderer(&mut self) -> Result<&mut Renderer, Failure> {
+        self.renderer.as_deref_mut().ok_or_else(nothing_renders)
     }
 
     /// A scene; `objects[i].mesh` is the text of an OBJ.
@@ -102,7 +119,12 @@ impl<'a> Bench<'a> {
                 )));
             }
         }
-        for account in &frame.stats.energy {
+        if let Some(unsaid) = unsaid(&frame.stats) {
+            return Err(Failure::Check(unsaid));
+        }
+        // Planes do not conserve energy; that they say so, and how much it is, was checked.
+        let by_planes = !frame.stats.planes.is_empty();
+        for account in frame.stats.energy.iter().filter(|_| !by_planes) {
             self.closure = self.closure.max(account.closure);
             let is_closed = account.closure <= MOST_CLOSURE;
             if !is_closed {
@@ -193,6 +215,46 @@ impl<'a> Bench<'a> {
 
 fn nothing_renders() -> Failure {
     Failure::Check("there is no renderer".to_owned())
+}
+
+/// Warnings about flux: each has to say how much.
+const OF_FLUX: [&str; 5] = [
+    "beams_torn",
+    "light_from_below_not_followed",
+    "light_under_floor",
+    "planes_do_not_conserve",
+    "scattering_not_followed",
+];
+
+/// What the accounts list as lost or only roughly placed, and no warning tells; or a warning about flux that does not say how much.
+fn unsaid(stats: &Stats) -> Option<String> {
+    let told = |code: &str| {
+        let mut found = stats.warnings.iter().filter(|w| w.code == code);
+        found.find_map(|w| w.flux_w)
+    };
+    for warning in &stats.warnings {
+        let tells = warning
+            .flux_w
+            .is_some_and(|w| w.iter().all(|v| v.is_finite()));
+        if OF_FLUX.contains(&warning.code.as_str()) && !tells {
+            return Some(format!("`{}` does not say how much flux", warning.code));
+        }
+    }
+    let scattered: [f64; 3] =
+        std::array::from_fn(|c| stats.energy.iter().map(|a| a.scattered_w[c]).sum());
+    if scattered != [0.0; 3] && told("scattering_not_followed") != Some(scattered) {
+        return Some(format!("{scattered:?} W are scattered and not warned of"));
+    }
+    let open = stats.energy.iter().find(|a| a.closure > MOST_CLOSURE);
+    match open {
+        Some(account) if !stats.planes.is_empty() && told("planes_do_not_conserve").is_none() => {
+            Some(format!(
+                "planes place {:e} of the flux of light {} too much or too little and do not say so",
+                account.closure, account.light
+            ))
+        }
+        _ => None,
+    }
 }
 
 /// The pixels of a layer of three or four channels (the fourth is left out).

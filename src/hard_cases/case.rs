@@ -23,17 +23,20 @@ pub enum Family {
     Fold,
     /// Awkward cameras and sizes of pictures.
     Camera,
+    /// A device that is lost, runs out of memory, is cancelled, and is used for days.
+    Machine,
 }
 
 impl Family {
     /// All families, in the order of the suite.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Light,
         Self::Water,
         Self::Place,
         Self::Mesh,
         Self::Fold,
         Self::Camera,
+        Self::Machine,
     ];
 
     /// Its name.
@@ -45,6 +48,7 @@ impl Family {
             Self::Mesh => "mesh",
             Self::Fold => "fold",
             Self::Camera => "camera",
+            Self::Machine => "machine",
         }
     }
 

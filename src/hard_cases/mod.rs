@@ -8,16 +8,20 @@
 //! - `bench`: rendering with the checks that hold for all;
 //! - `truths`: what pictures are compared with;
 //! - `page`: the suite as a document;
-//! - the families: `light`, `water`, `place`, `mesh`, `fold`, `camera`.
+//! - the families: `light` (and `lamp`), `water`, `place`, `mesh`, `fold`, `camera`, `machine` (with
+//!   `sabotage`: how to harm a device).
 
 mod bench;
 mod camera;
 pub mod case;
 mod fold;
+mod lamp;
 mod light;
+mod machine;
 mod mesh;
 pub mod page;
 mod place;
+mod sabotage;
 mod truths;
 mod water;
 
@@ -30,11 +34,13 @@ use crate::render::Renderer;
 pub fn all() -> impl Iterator<Item = &'static Case> {
     [
         light::CASES,
+        lamp::CASES,
         water::CASES,
         place::CASES,
         mesh::CASES,
         fold::CASES,
         camera::CASES,
+        machine::CASES,
     ]
     .into_iter()
     .flatten()
@@ -45,14 +51,37 @@ pub fn find(name: &str) -> Option<&'static Case> {
     all().find(|case| case.name == name)
 }
 
-/// Runs a case.
-pub fn run(case: &'static Case, renderer: &mut Renderer) -> Outcome {
-    run_with(case, renderer, &mut Truths::default())
+/// How a suite is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Frames of the case that makes many, at least 10.
+    pub renders: u32,
+    /// Whether nothing else runs in this process: then its memory is the suite's.
+    pub is_alone: bool,
 }
 
-/// Runs a case with references that earlier runs may have left.
-pub fn run_with(case: &'static Case, renderer: &mut Renderer, truths: &mut Truths) -> Outcome {
-    let mut bench = bench::Bench::new(Some(renderer), truths);
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            renders: 300,
+            is_alone: false,
+        }
+    }
+}
+
+/// Runs a case.
+pub fn run(case: &'static Case, renderer: &mut Renderer) -> Outcome {
+    run_with(case, renderer, &mut Truths::default(), Settings::default())
+}
+
+/// Runs a case as the settings say, with references that earlier runs may have left.
+pub fn run_with(
+    case: &'static Case,
+    renderer: &mut Renderer,
+    truths: &mut Truths,
+    settings: Settings,
+) -> Outcome {
+    let mut bench = bench::Bench::new(Some(renderer), truths, settings);
     let result = (case.run)(&mut bench);
     bench.outcome(case, result)
 }
@@ -60,7 +89,7 @@ pub fn run_with(case: &'static Case, renderer: &mut Renderer, truths: &mut Truth
 /// The scene that a case begins with, as JSON with the texts of OBJ files for meshes; nothing is rendered.
 pub fn scene(case: &'static Case) -> Option<serde_json::Value> {
     let mut truths = Truths::default();
-    let mut bench = bench::Bench::new(None, &mut truths);
+    let mut bench = bench::Bench::new(None, &mut truths, Settings::default());
     // Without a renderer every case ends at its first scene.
     let _ = (case.run)(&mut bench);
     bench.into_scene()

@@ -192,6 +192,24 @@ pub(super) const CASES: &[Case] = &[
         },
     ),
     Water.case(
+        "scattering_of_1_per_metre",
+        "light that is scattered and in no account",
+        CLOSED_FORM,
+        1e-4,
+        |b| {
+            flat_error(
+                b,
+                with(
+                    pool(),
+                    &[
+                        ("/water/absorption_per_m", json!([0.3, 0.1, 0.02])),
+                        ("/water/scattering_per_m", json!([1, 0.5, 0])),
+                    ],
+                ),
+            )
+        },
+    ),
+    Water.case(
         "waves_that_cancel",
         "residues of phases and directions that should be nothing",
         "largest difference from flat water, to the mean",

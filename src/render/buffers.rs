@@ -122,9 +122,12 @@ impl Renderer {
             empty,
             queue_heads,
             slices,
-            indirect: self
-                .pool
-                .lend(&device, "indirect", 12, U::INDIRECT | U::COPY_DST),
+            indirect: self.pool.lend(
+                &device,
+                "indirect",
+                12,
+                U::INDIRECT | U::COPY_DST | U::COPY_SRC,
+            ),
         };
         self.upload(facts, &buffers);
         self.gpu.check()?;

@@ -69,6 +69,17 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
     (accounts, warnings)
 }
 
+/// Code of the warning that scattered light is lost.
+const SCATTERED: &str = "scattering_not_followed";
+
+/// Says in the warning of light that is lost by scattering how much that was, all lights together.
+pub(super) fn tell_scattered(warnings: &mut [Warning], energy: &[EnergyAccount]) {
+    for warning in warnings.iter_mut().filter(|w| w.code == SCATTERED) {
+        let sum = |c: usize| energy.iter().map(|account| account.scattered_w[c]).sum();
+        warning.flux_w = Some(std::array::from_fn(sum));
+    }
+}
+
 /// What placing light by planes took, from the counts of each sun and object.
 pub(super) fn planes(facts: &SceneFacts, counts: &[Vec<[u32; 4]>]) -> Vec<PlaneStats> {
     let cells = facts.quality.water_cells;

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use super::buffers::{DrawTargets, FrameBuffers};
-use super::{Renderer, ms_since, slot_name};
+use super::{KernelKey, RenderError, Renderer, ms_since, slot_name};
 use crate::gpu::kernel::RasterTargets;
+use crate::gpu::pieces::PIECE;
 use crate::gpu::shader::Access;
 use crate::gpu::{Binding, GpuError, Kernel, RasterKernel};
 use crate::passes::desc::{Groups, PassDesc, Run, Step, Surface, Work};
@@ -30,6 +31,15 @@ impl Recording {
     }
 }
 
+/// How many workgroups a dispatch runs.
+#[derive(Clone, Copy)]
+enum Launch {
+    /// These.
+    Groups([u32; 3]),
+    /// As many as the queue has said.
+    Counted,
+}
+
 impl Renderer {
     pub(super) fn encoder(&self, label: &str) -> wgpu::CommandEncoder {
         self.gpu
@@ -38,13 +48,14 @@ impl Renderer {
     }
 
     pub(super) fn submit(
-        &self,
+        &mut self,
         encoder: wgpu::CommandEncoder,
         started: Recording,
         time_ms: &mut TimeStats,
     ) -> Result<(), GpuError> {
         let commands = encoder.finish();
-        // Passes that the host timed on the way are GPU time, not recording.
+        // Passes that the host timed on the way, and pieces, are GPU time, not recording.
+        time_ms.gpu += std::mem::take(&mut self.cutting.unaccounted_ms);
         time_ms.upload += ms_since(started.at) - (time_ms.gpu - started.gpu_ms);
         let submitted = Instant::now();
         self.gpu.queue.submit([commands]);
@@ -81,7 +92,7 @@ impl Renderer {
         run: Run<'_>,
         buffers: &FrameBuffers,
         targets: Option<&DrawTargets>,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), RenderError> {
         // What has nothing to do with the sums is one kernel for both.
         let sums = pass.reads.iter().chain(pass.writes);
         let wide_sums = matches!(run, Run::Sun { wide_sums, .. } | Run::CoarseSun { wide_sums, .. } if wide_sums)
@@ -144,40 +155,7 @@ impl Renderer {
         (groups, wide_sums): (Groups, bool),
         buffers: &FrameBuffers,
         texture: &dyn Fn(&str) -> Option<wgpu::TextureView>,
-    ) -> Result<(), GpuError> {
-        let by_planes = facts.quality.has_planes();
-        let key = (
-            pass.name,
-            step.entry,
-            facts.attenuates(),
-            wide_sums,
-            by_planes,
-        );
-        if !self.kernels.contains_key(&key) {
-            let path = format!("passes/{}.wgsl", pass.name);
-            let switch = |on: bool| f64::from(u8::from(on));
-            let constants = [
-                ("ATTENUATES", switch(facts.attenuates())),
-                ("WIDE_SUMS", switch(wide_sums)),
-                ("PLANES", switch(by_planes)),
-            ];
-            let kernel = Kernel::new(&self.gpu, &self.sources, &path, step.entry, &constants)?;
-            self.kernels.insert(key, kernel);
-        }
-        let uniforms = self.uniform_buffers(step);
-        let kernel = &self.kernels[&key];
-        let textures: BTreeMap<&str, wgpu::TextureView> = kernel
-            .bindings()
-            .iter()
-            .filter(|bound| matches!(bound.access, Access::Texture(_)))
-            .filter_map(|bound| Some((bound.name.as_str(), texture(&bound.name)?)))
-            .collect();
-        let group = kernel.bind(&self.gpu, |name| match textures.get(name) {
-            Some(view) => Some(Binding::Texture(view)),
-            None => Some(Binding::Buffer(
-                uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
-            )),
-        })?;
+    ) -> Result<(), RenderError> {
         let queue = match groups {
             Groups::Direct(_) => None,
             Groups::Queue(slot) => Some((slot, 0)),
@@ -192,7 +170,78 @@ impl Renderer {
                 12,
             );
         }
-        let timestamp_writes = self.timing.span(pass.name).map(|(query_set, begin, end)| {
+        let cut = self.to_be_cut(encoder, pass.name, groups, buffers)?;
+        let by_planes = facts.quality.has_planes();
+        let key = (
+            pass.name,
+            step.entry,
+            facts.attenuates(),
+            wide_sums,
+            by_planes,
+            cut.is_some(),
+        );
+        if !self.kernels.contains_key(&key) {
+            let path = format!("passes/{}.wgsl", pass.name);
+            let switch = |on: bool| f64::from(u8::from(on));
+            let constants = [
+                ("ATTENUATES", switch(facts.attenuates())),
+                ("WIDE_SUMS", switch(wide_sums)),
+                ("PLANES", switch(by_planes)),
+            ];
+            let make = if cut.is_some() {
+                Kernel::in_pieces
+            } else {
+                Kernel::new
+            };
+            let kernel = make(&self.gpu, &self.sources, &path, step.entry, &constants)?;
+            self.kernels.insert(key, kernel);
+        }
+        let Some((all, first)) = cut else {
+            let launch = match groups {
+                Groups::Direct(all) => Launch::Groups(all),
+                Groups::Queue(_) | Groups::QueueAt(..) => Launch::Counted,
+            };
+            return Ok(self.launch(encoder, key, step, launch, buffers, texture)?);
+        };
+        self.run_pieces(
+            encoder,
+            pass.name,
+            (all, first),
+            &mut |this, encoder, piece| {
+                let mut told = step.clone();
+                let uniform = bytemuck::bytes_of(&piece.uniform(all)).to_vec();
+                told.uniforms.push((PIECE, uniform));
+                let launch = Launch::Groups(piece.groups);
+                Ok(this.launch(encoder, key, &told, launch, buffers, texture)?)
+            },
+        )
+    }
+
+    /// Records a dispatch of a kernel that is there.
+    fn launch(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        key: KernelKey,
+        step: &Step,
+        launch: Launch,
+        buffers: &FrameBuffers,
+        texture: &dyn Fn(&str) -> Option<wgpu::TextureView>,
+    ) -> Result<(), GpuError> {
+        let uniforms = self.uniform_buffers(step);
+        let kernel = &self.kernels[&key];
+        let textures: BTreeMap<&str, wgpu::TextureView> = kernel
+            .bindings()
+            .iter()
+            .filter(|bound| matches!(bound.access, Access::Texture(_)))
+            .filter_map(|bound| Some((bound.name.as_str(), texture(&bound.name)?)))
+            .collect();
+        let group = kernel.bind(&self.gpu, |name| match textures.get(name) {
+            Some(view) => Some(Binding::Texture(view)),
+            None => Some(Binding::Buffer(
+                uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
+            )),
+        })?;
+        let timestamp_writes = self.timing.span(key.0).map(|(query_set, begin, end)| {
             wgpu::ComputePassTimestampWrites {
                 query_set,
                 beginning_of_pass_write_index: Some(begin),
@@ -205,11 +254,9 @@ impl Renderer {
         });
         compute.set_pipeline(kernel.pipeline());
         compute.set_bind_group(0, &group, &[]);
-        match groups {
-            Groups::Direct([x, y, z]) => compute.dispatch_workgroups(x, y, z),
-            Groups::Queue(_) | Groups::QueueAt(..) => {
-                compute.dispatch_workgroups_indirect(&buffers.indirect, 0);
-            }
+        match launch {
+            Launch::Groups([x, y, z]) => compute.dispatch_workgroups(x, y, z),
+            Launch::Counted => compute.dispatch_workgroups_indirect(&buffers.indirect, 0),
         }
         Ok(())
     }

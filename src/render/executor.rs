@@ -273,7 +273,7 @@ impl Renderer {
     ) -> Result<Vec<Staged>, RenderError> {
         let group = passes::coarse_irradiance::PASS.name;
         let energy = buffers.get(slot_name(Slot::Energy));
-        let started = Instant::now();
+        let started = Recording::start(time_ms);
         let mut accounts = Vec::new();
         self.timing.group(Some(group));
         for (index, &wide_sums) in wide_sums.iter().enumerate() {
@@ -292,12 +292,13 @@ impl Renderer {
             self.gpu.queue.submit([encoder.finish()]);
         }
         self.timing.group(None);
-        time_ms.upload += ms_since(started);
+        time_ms.gpu += std::mem::take(&mut self.cutting.unaccounted_ms);
+        time_ms.upload += ms_since(started.at) - (time_ms.gpu - started.gpu_ms);
         if self.timing.by_host() {
             let submitted = Instant::now();
             self.gpu.wait()?;
             time_ms.gpu += ms_since(submitted);
-            self.timing.note(group, ms_since(started));
+            self.timing.note(group, ms_since(started.at));
         }
         Ok(accounts)
     }
@@ -329,7 +330,7 @@ impl Renderer {
         run: Run<'_>,
         buffers: &FrameBuffers,
         time_ms: &mut TimeStats,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), RenderError> {
         for pass in passes {
             self.record(encoder, pass, facts, run, buffers, None)?;
             self.submit_if_timed(pass, encoder, time_ms)?;

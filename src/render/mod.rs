@@ -5,6 +5,7 @@ mod collect;
 mod commands;
 mod executor;
 mod geometry;
+mod pieces;
 mod self_check;
 mod slices;
 mod tune;
@@ -78,8 +79,9 @@ impl From<plan::PlanError> for RenderError {
 /// Idle polls (one a second) after which buffers kept for the next frame are given up.
 const IDLE_POLLS: u32 = 5;
 
-/// Pass, entry point, whether it attenuates, whether its flux sums are wide, whether meshes get their light by planes.
-type KernelKey = (&'static str, &'static str, bool, bool, bool);
+/// Pass, entry point, whether it attenuates, whether its flux sums are wide, whether meshes get their light by planes, whether it
+/// runs in pieces.
+type KernelKey = (&'static str, &'static str, bool, bool, bool, bool);
 
 /// Fragment entry point, and whether the farthest fragment stays instead of the nearest.
 type RasterKey = (&'static str, bool);
@@ -104,6 +106,7 @@ pub struct Renderer {
     idle_polls: u32,
     wide_sum_reruns: u64,
     watches_allocator: bool,
+    cutting: pieces::Cutting,
 }
 
 impl Renderer {
@@ -149,6 +152,7 @@ impl Renderer {
             idle_polls: 0,
             wide_sum_reruns: 0,
             watches_allocator: false,
+            cutting: pieces::Cutting::default(),
         })
     }
 
@@ -184,11 +188,36 @@ impl Renderer {
         Ok(plan)
     }
 
-    /// Renders; `cancel` is looked at between submissions.
+    /// Renders; `cancel` is looked at between submissions. Where the GPU runs out of memory the caches make way and the frame is
+    /// tried once more.
     ///
     /// # Errors
     /// When the scene cannot be rendered within the budget, the GPU fails, or the job is cancelled.
     pub fn render(
+        &mut self,
+        resolved: &ResolvedScene,
+        cancel: &CancellationToken,
+    ) -> Result<Frame, RenderError> {
+        match self.render_once(resolved, cancel) {
+            Err(RenderError::Gpu(GpuError::OutOfMemory(first))) => {
+                tracing::warn!(
+                    error = first,
+                    "the caches are emptied, and the frame is tried again"
+                );
+                match self.render_once(resolved, cancel) {
+                    Err(RenderError::Gpu(GpuError::OutOfMemory(again))) => {
+                        Err(RenderError::Gpu(GpuError::OutOfMemory(format!(
+                            "{again} (with empty caches, at the second try)"
+                        ))))
+                    }
+                    other => other,
+                }
+            }
+            other => other,
+        }
+    }
+
+    fn render_once(
         &mut self,
         resolved: &ResolvedScene,
         cancel: &CancellationToken,
@@ -244,6 +273,7 @@ impl Renderer {
             warnings: plan.warnings,
         };
         stats.warnings.extend(run.warnings);
+        collect::tell_scattered(&mut stats.warnings, &stats.energy);
         if let Some((_, chosen)) = tuned {
             stats.warnings.extend(tune::unmet(asked, &chosen));
             let adapter = format!("{}, {}", stats.adapter.name, stats.adapter.driver);
@@ -278,6 +308,7 @@ impl Renderer {
         self.idle_polls = 0;
         self.uniforms.begin_frame();
         self.timing.begin_frame();
+        self.cutting.begin_frame(cancel);
         let result = self.execute(resolved, facts, plan, &missing, cancel);
         // Maps that are whole stay, also those of a frame that was cancelled after them.
         self.level_maps.forget_unbuilt();
@@ -286,6 +317,8 @@ impl Renderer {
             self.level_maps.clear();
             self.arena = None;
             self.geometry = None;
+            self.pool.clear();
+            self.gpu.forget_errors();
         }
         result
     }
@@ -322,6 +355,16 @@ impl Renderer {
     /// Whether frames report what the GPU's allocator has given out (`stats.memory.allocated_bytes`).
     pub fn watch_allocator(&mut self, on: bool) {
         self.watches_allocator = on;
+    }
+
+    /// Most workgroups that run as one piece, whatever their time; `None`: pieces are cut by their time, of long dispatches only.
+    pub fn cut_into(&mut self, most_groups: Option<u64>) {
+        self.cutting.most_groups = most_groups;
+    }
+
+    /// Pieces that dispatches were cut into since the start, and the time of the longest, ms.
+    pub fn pieces(&self) -> (u64, f64) {
+        (self.cutting.pieces, self.cutting.longest_ms)
     }
 
     /// Bytes held on the GPU between frames: free pooled buffers, level maps, geometry.

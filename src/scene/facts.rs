@@ -353,6 +353,7 @@ impl SceneFacts {
                     "the light is not above the floor and lights nothing",
                 );
                 warning.pointer = Some(format!("/lights/{index}"));
+                warning.flux_w = Some(power.map(|i| 2.0 * std::f64::consts::TAU * i));
                 self.warnings.push(warning);
                 continue;
             }

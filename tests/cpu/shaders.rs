@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use caustica::gpu::GpuError;
 use caustica::gpu::shader::{Access, Module, ShaderSources};
+use caustica::gpu::{GpuError, pieces};
 use caustica::passes::{self, PassDesc, Slot, gpu_data, shaders};
 use caustica::physics::registry;
 use wgpu::naga;
@@ -303,4 +303,69 @@ fn slots_have_names_of_their_own() {
         assert_eq!(Slot::by_name(slot.info().name), Some(slot));
     }
     assert_eq!(Slot::by_name("nothing"), None);
+}
+
+/// A workgroup that is told where it is reads nothing else, and every entry point that reads where it is can be told.
+#[test]
+fn every_compute_entry_can_be_run_in_pieces() {
+    let mut cut = 0;
+    for (path, module) in pass_modules() {
+        for entry in &module.ir.entry_points {
+            if entry.stage != naga::ShaderStage::Compute || entry.function.arguments.is_empty() {
+                continue;
+            }
+            let told = pieces::told_its_piece(&module, path, &entry.name)
+                .unwrap_or_else(|error| panic!("{error}"));
+            let told = Module::parse(path, told).unwrap_or_else(|error| panic!("{error}"));
+            let bound = told.bindings(path, &entry.name).unwrap();
+            let uniform = bound.iter().find(|bound| bound.name == pieces::PIECE);
+            assert_eq!(
+                uniform.map(|bound| bound.access),
+                Some(Access::Uniform(32)),
+                "{} of {path}",
+                entry.name
+            );
+            cut += 1;
+        }
+    }
+    assert!(cut >= 15, "{cut}");
+    let module = module("passes/hits.wgsl");
+    assert!(pieces::told_its_piece(&module, "passes/hits.wgsl", "misses_main").is_err());
+}
+
+/// Pieces of any size tile the dispatch: every workgroup once, in order.
+#[test]
+fn pieces_are_the_whole() {
+    for all in [[5, 1, 1], [4, 3, 1], [4, 3, 2], [1, 7, 1], [1, 1, 1]] {
+        let [x, y, z] = all;
+        for most in 0..30 {
+            let mut done = 0;
+            let mut seen = Vec::new();
+            while let Some(piece) = pieces::Piece::after(all, done, most) {
+                assert!(piece.count() <= most.max(1), "{piece:?} of {most}");
+                for k in 0..piece.groups[2] {
+                    for j in 0..piece.groups[1] {
+                        for i in 0..piece.groups[0] {
+                            let [a, b, c] = piece.first;
+                            seen.push(a + i + x * (b + j + y * (c + k)));
+                        }
+                    }
+                }
+                done += piece.count();
+            }
+            let whole: Vec<u32> = (0..x * y * z).collect();
+            assert_eq!(seen, whole, "{all:?} by {most}");
+        }
+    }
+    assert_eq!(pieces::Piece::after([3, 0, 1], 0, 4), None);
+}
+
+/// A piece that was too long makes the next one shorter, a short one makes it longer, but not by much at once.
+#[test]
+fn pieces_are_sized_by_the_last() {
+    let longest = pieces::LONGEST_MS;
+    assert_eq!(pieces::next_size(1000, longest), 500);
+    assert_eq!(pieces::next_size(1000, 100.0 * longest), 5);
+    assert_eq!(pieces::next_size(1000, 0.0), 16_000);
+    assert_eq!(pieces::next_size(1, 1e9), 1);
 }

@@ -1,13 +1,26 @@
 //! The suite of hard cases, a test each; the names here and the suite's are compared.
 
-use caustica::hard_cases::{self, Verdict};
+use std::process::Command;
+
+use caustica::hard_cases::{self, Settings, Truths, Verdict};
 
 use super::harness::renderer;
+
+/// `CAUSTICA_RENDERS` says how many frames the case of many makes. Other tests run in this process: its memory is not the suite's.
+fn settings() -> Settings {
+    let renders = std::env::var("CAUSTICA_RENDERS").map_or(Settings::default().renders, |text| {
+        text.parse().expect("CAUSTICA_RENDERS is a number")
+    });
+    Settings {
+        renders,
+        is_alone: false,
+    }
+}
 
 /// Runs a case and says what came of it.
 fn check(name: &str) {
     let case = hard_cases::find(name).unwrap_or_else(|| panic!("there is no case {name}"));
-    let outcome = hard_cases::run(case, &mut renderer());
+    let outcome = hard_cases::run_with(case, &mut renderer(), &mut Truths::default(), settings());
     println!(
         "{} / {name}: {:.1e} of {:.0e} ({}), closure {:.0e}, warnings {:?}",
         case.family.name(),
@@ -59,6 +72,12 @@ cases! {
         no_irradiance,
         one_dark_channel,
         dim_and_bright_suns_together,
+        a_lamp_a_millimetre_above_the_water,
+        a_lamp_on_the_water,
+        a_lamp_a_millimetre_under_the_water,
+        a_lamp_exactly_above_a_vertex_of_the_grid,
+        a_lamp_a_millimetre_above_a_wave,
+        a_lamp_a_millimetre_under_a_wave,
     }
     water {
         flat_water,
@@ -81,6 +100,7 @@ cases! {
         a_period_before_minus_a_million_seconds,
         absorption_of_a_billionth,
         absorption_of_1000_per_metre,
+        scattering_of_1_per_metre,
         waves_that_cancel,
         a_line_focus_on_the_floor,
         a_point_focus_on_the_floor,
@@ -135,6 +155,30 @@ cases! {
         one_column_of_8192_pixels,
         pictures_of_8192_by_8192_pixels,
     }
+    machine {
+        a_device_lost_in_mid_frame,
+        out_of_memory_once,
+        out_of_memory_for_good,
+        every_dispatch_in_pieces,
+        cancelled_between_pieces,
+        thousands_of_small_renders,
+    }
+}
+
+/// In a process of its own the memory of the process is looked at, too.
+#[test]
+fn many_renders_leave_the_process_as_it_was() {
+    let output = Command::new(env!("CARGO_BIN_EXE_caustica"))
+        .args(["hard-cases", "thousands_of_small_renders"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    println!("{said}");
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.contains("ok") && said.contains("thousands_of_small_renders"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -33,6 +33,7 @@ mod level_maps_service;
 mod memory;
 mod planes;
 mod planted;
+mod properties;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
 mod service;

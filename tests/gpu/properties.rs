@@ -1,0 +1,310 @@
+//! What holds for every scene within the documented ranges: random ones, the same every time. `CAUSTICA_PROPERTY_CASES` says how
+//! many; a failure prints the scene.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use caustica::config::Limits;
+use caustica::frame::Frame;
+use caustica::mesh::{Mesh, MeshStore};
+use caustica::render::Renderer;
+use caustica::scene::{ResolvedScene, Scene, resolve};
+use serde_json::{Value, json};
+
+use super::harness::{renderer, try_render};
+
+/// Most that an energy account may be open by, where planes do not place the light.
+const CLOSURE: f64 = 1e-5;
+/// One scene in so many is rendered again.
+const AGAIN: u64 = 8;
+/// Least share of the scenes that must be rendered, not refused: else the generator asks for nonsense.
+const RENDERED: f64 = 0.9;
+
+/// SplitMix64 (Steele, Lea, Flood 2014): every seed gives another stream.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// 0 … 1.
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// As often in each power of ten.
+    fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+        (self.within(low.ln(), high.ln())).exp()
+    }
+
+    fn below(&mut self, count: u64) -> u64 {
+        self.next() % count
+    }
+
+    fn one_in(&mut self, count: u64) -> bool {
+        self.below(count) == 0
+    }
+
+    /// One of these, all alike.
+    fn of<T: Clone>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len() as u64) as usize].clone()
+    }
+}
+
+const BOX: &str = include_str!("../../scenes/meshes/box.obj");
+/// A closed tetrahedron with a needle for a face, and a face without area.
+const SPIKE: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1e-4 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 2 2\n";
+
+/// A scene; lengths go with `size_m`, so that small and large worlds come as often.
+fn scene(random: &mut Random) -> Value {
+    let size_m = random.magnitude(1e-2, 1e3);
+    let depth_m = size_m * random.of(&[0.0, 1e-4, 0.1, 1.0, 1.0, 1.0, 10.0]);
+    let waves: Vec<Value> = (0..random.below(4))
+        .map(|_| {
+            let wavelength_m = size_m * random.magnitude(0.1, 10.0);
+            // Slopes 2π a/λ up to 20, mostly gentle.
+            let slope = random.magnitude(1e-4, 20.0).min(random.magnitude(1e-3, 20.0));
+            json!({ "kind": "sine", "amplitude_m": (slope * wavelength_m / std::f64::consts::TAU).min(100.0), "wavelength_m": wavelength_m,
+                    "direction_deg": random.within(-360.0, 360.0), "phase_deg": random.within(-720.0, 720.0) })
+        })
+        .collect();
+    let rgb = |random: &mut Random, low: f64, high: f64| {
+        let one = random.magnitude(low, high);
+        let tint = |random: &mut Random| {
+            if random.one_in(6) {
+                0.0
+            } else {
+                one * random.within(0.2, 1.0)
+            }
+        };
+        json!([tint(random), tint(random), tint(random)])
+    };
+    let optical = random.of(&[0.0, 0.0, 0.1, 1.0, 30.0]) / (depth_m + size_m);
+    let coefficients = |random: &mut Random, most: f64| -> Value {
+        json!([
+            most * random.unit(),
+            most * random.unit(),
+            most * random.unit()
+        ])
+    };
+    let coefficient = coefficients(random, optical);
+    let scattering = if random.one_in(3) {
+        coefficients(random, optical)
+    } else {
+        json!([0, 0, 0])
+    };
+    let lights: Vec<Value> = (0..=random.below(3))
+        .map(|_| {
+            if random.one_in(3) {
+                let position: Vec<f64> = [size_m, depth_m.max(size_m), size_m]
+                    .map(|reach| reach * random.within(-1.0, 1.0) * random.of(&[0.0, 1e-3, 1.0, 1.0]))
+                    .to_vec();
+                json!({ "kind": "point", "position_m": position, "intensity_w_sr": rgb(random, 1e-6, 1e6) })
+            } else {
+                let elevation = match random.below(3) {
+                    0 => random.within(-5.0, 90.0),
+                    1 => random.magnitude(1e-3, 10.0),
+                    _ => 90.0,
+                };
+                json!({ "kind": "sun", "elevation_deg": elevation, "azimuth_deg": random.within(-360.0, 360.0),
+                        "irradiance_w_m2": rgb(random, 1e-6, 1e6) })
+            }
+        })
+        .collect();
+    let objects: Vec<Value> = (0..random.below(3))
+        .map(|_| {
+            let turn: [f64; 4] = std::array::from_fn(|_| random.within(-1.0, 1.0) + 1e-3);
+            let length = turn.iter().map(|q| q * q).sum::<f64>().sqrt();
+            json!({ "mesh": random.of(&["box", "spike"]), "scale": size_m * random.magnitude(1e-2, 1.0),
+                    "rotation": turn.map(|q| q / length),
+                    "translation_m": [size_m * random.within(-0.7, 0.7), -depth_m * random.within(-0.2, 1.2), size_m * random.within(-0.7, 0.7)],
+                    "albedo": [random.unit(), random.unit(), random.unit()] })
+        })
+        .collect();
+    let mut quality = json!({
+        "water_cells": 2 + random.below(95), "map_texels": 16 + random.below(100), "level_map_texels": random.of(&[16, 32, 64]),
+        "split_levels": random.below(4), "layers": 1 + random.below(2), "estimate_error": random.one_in(4)
+    });
+    match random.below(6) {
+        0 => quality["placement"] = json!("planes"),
+        1 => quality["method"] = json!("volumetric"),
+        _ => {}
+    }
+    if quality.get("placement").or(quality.get("method")).is_some() {
+        quality["planes"] = json!(2 + random.below(14));
+        quality["layers"] = json!(1);
+    }
+    let side = size_m * random.magnitude(0.05, 2.0);
+    let output = match random.below(3) {
+        0 => {
+            json!({ "kind": "view", "width": 1 + random.below(48), "height": 1 + random.below(32), "format": "exr",
+                     "layers": ["radiance", "irradiance", "depth"] })
+        }
+        _ => {
+            json!({ "kind": "irradiance_map", "receiver": "floor", "min_m": [-side, -side], "max_m": [side, side],
+                     "width": 1 + random.below(40), "height": 1 + random.below(40) })
+        }
+    };
+    let mut scene = json!({
+        "water": { "waves": waves, "ior": random.of(&[1.0, 1.0001, 1.333, 1.333, 1.333, 2.4]),
+                   "absorption_per_m": coefficient, "scattering_per_m": scattering },
+        "floor": { "depth_m": depth_m, "size_m": [3.0 * size_m, 3.0 * size_m] },
+        "lights": lights, "objects": objects, "quality": quality, "output": output,
+        "time_s": random.of(&[0.0, 1.0, -1e6, 1e9])
+    });
+    if scene["output"]["kind"] == "view" {
+        let eye: Vec<f64> = [1.0, 2.0, 1.0]
+            .map(|reach| size_m * reach * random.within(-1.0, 1.0))
+            .to_vec();
+        scene["camera"] = json!({ "position_m": eye, "target_m": [0.0, -0.5 * depth_m - 0.01 * size_m, 0.02 * size_m],
+                                  "vertical_fov_deg": random.of(&[1.0, 45.0, 120.0]) });
+    }
+    scene
+}
+
+/// The scene as the service takes it in; `None` where it is refused with findings.
+fn resolved(mut value: Value, store: &MeshStore) -> Option<ResolvedScene> {
+    let mut meshes: Vec<std::sync::Arc<Mesh>> = Vec::new();
+    for object in value["objects"].as_array_mut().unwrap() {
+        let text = if object["mesh"] == "box" { BOX } else { SPIKE };
+        let mesh = store.insert_obj(text.as_bytes(), None).unwrap().mesh;
+        object["mesh"] = json!(mesh.id);
+        meshes.push(mesh);
+    }
+    let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
+    let resolved =
+        Scene::from_value(value).and_then(|scene| resolve(scene, &Limits::default(), find));
+    match resolved {
+        Ok(resolved) => Some(resolved),
+        Err(error) => {
+            assert!(!error.issues.is_empty());
+            assert!(
+                error.issues.iter().all(|issue| !issue.accepted.is_empty()),
+                "{error}"
+            );
+            None
+        }
+    }
+}
+
+fn bits(frame: &Frame) -> Vec<Vec<u32>> {
+    let layers = frame.layers.values();
+    layers
+        .map(|layer| layer.data.iter().map(|v| v.to_bits()).collect())
+        .collect()
+}
+
+/// All lights twice as strong.
+fn doubled(mut scene: Value) -> Value {
+    for light in scene["lights"].as_array_mut().unwrap() {
+        for field in ["irradiance_w_m2", "intensity_w_sr"] {
+            for value in light
+                .get_mut(field)
+                .and_then(Value::as_array_mut)
+                .into_iter()
+                .flatten()
+            {
+                *value = json!(2.0 * value.as_f64().unwrap());
+            }
+        }
+    }
+    scene
+}
+
+/// Checks one scene; false where it was refused.
+fn check(renderer: &mut Renderer, store: &MeshStore, value: &Value, again: bool) -> bool {
+    let Some(scene) = resolved(value.clone(), store) else {
+        return false;
+    };
+    let frame = match try_render(renderer, &scene) {
+        Ok(frame) => frame,
+        Err(caustica::render::RenderError::Scene(error)) => {
+            assert!(!error.issues.is_empty());
+            return false;
+        }
+        Err(error) => panic!("{error}"),
+    };
+    renderer.gpu().check().unwrap();
+    for (name, layer) in &frame.layers {
+        assert!(layer.data.iter().all(|v| v.is_finite()), "{name:?}");
+    }
+    let quality = &value["quality"];
+    let by_planes = quality["placement"] == "planes" || quality["method"] == "volumetric";
+    for account in &frame.stats.energy {
+        let accounted = account.closure <= CLOSURE || by_planes;
+        assert!(accounted, "open by {:e}: {account:?}", account.closure);
+    }
+    for warning in &frame.stats.warnings {
+        assert!(
+            warning
+                .flux_w
+                .is_none_or(|flux| flux.iter().all(|v| v.is_finite())),
+            "{warning:?}"
+        );
+    }
+    if again {
+        let second = try_render(renderer, &scene).unwrap();
+        assert!(
+            bits(&frame) == bits(&second),
+            "another picture the second time"
+        );
+    }
+    let twice = try_render(renderer, &resolved(doubled(value.clone()), store).unwrap()).unwrap();
+    for name in [
+        caustica::scene::LayerName::Irradiance,
+        caustica::scene::LayerName::Radiance,
+    ] {
+        let (Some(one), Some(two)) = (frame.layers.get(&name), twice.layers.get(&name)) else {
+            continue;
+        };
+        for (at, (a, b)) in one.data.iter().zip(&two.data).enumerate() {
+            // The fourth channel is no light.
+            let is_light = at % one.channels < 3;
+            assert!(
+                !is_light || 2.0 * a == *b,
+                "{name:?} {at}: {a:e}, doubled {b:e}"
+            );
+        }
+    }
+    true
+}
+
+#[test]
+fn random_scenes_are_finite_closed_linear_and_the_same_again() {
+    let cases: u64 = match std::env::var("CAUSTICA_PROPERTY_CASES") {
+        Ok(text) => text.parse().expect("CAUSTICA_PROPERTY_CASES is a number"),
+        Err(_) => 100,
+    };
+    let store = MeshStore::new(&Limits::default());
+    let mut renderer = renderer();
+    let mut rendered = 0;
+    let mut failed = Vec::new();
+    for seed in 0..cases {
+        let value = scene(&mut Random(seed));
+        let checked = catch_unwind(AssertUnwindSafe(|| {
+            check(&mut renderer, &store, &value, seed % AGAIN == 0)
+        }));
+        match checked {
+            Ok(done) => rendered += u64::from(done),
+            Err(_) => {
+                println!("scene {seed}: {value}");
+                failed.push(seed);
+            }
+        }
+    }
+    println!("{rendered} of {cases} scenes rendered, the others refused");
+    assert!(failed.is_empty(), "scenes {failed:?} of {cases}");
+    assert!(
+        rendered as f64 >= RENDERED * cases as f64,
+        "{rendered} of {cases}"
+    );
+}
