@@ -4,8 +4,10 @@
 //! `make docs` runs it; truths are kept in `out/truth`, so a second run only renders. Times are those of the machine it runs on,
 //! which the page names.
 
+mod layers;
 mod level_maps;
 mod page;
+mod residual;
 mod scenes;
 mod wishes;
 
