@@ -127,7 +127,7 @@ pub(crate) fn chapter(renderer: &RefCell<Renderer>) -> Result<String, Box<dyn Er
     }
     text.push_str(
         "\nOne layer leaves the side away from the sun dark, the second lights it; a box has two surfaces, so the third and fourth cost memory \
-        and time and buy nothing.\n",
+        and buy nothing.\n",
     );
     Ok(text)
 }

@@ -111,9 +111,9 @@ const EXPLANATION: &str = "\nThree errors add up, and only the first goes with t
     2. A stair of planes has treads and no risers. With a the axis of the level map, n the normal and w the way of a ray, a texel takes \
     what goes through its tread, in proportion to a·w; turned to the surface by n·a that is (n·a)(a·w), where n·w is right. The two \
     differ by tan θ tan δ for a slope of θ and a ray δ off the axis: neither d nor texels are in it. Halved waves halve \
-    δ and with it `inner`; texels do not matter to it; a face across the axis has none of it. On the steep parts a tilted ray goes \
+    δ and with it `inner`; more texels do not lessen it; a face across the axis has none of it. On the steep parts a tilted ray goes \
     between two treads, or through both. `tests/gpu/planes.rs` holds a tilted plate under evenly tilted water to this formula.\n\
-    3. On the rim a texel counts as covered when its middle is, and takes the light of all of it. That is `rim`: halved with every \
+    3. On the rim a texel counts as covered when its middle is, and takes the light of all of it. That is `rim`: at least halved with every \
     doubling of the texels, and not changed by planes.\n\n\
     All three are in the method: slice images have the same treads and the same rim, and agree with level maps to the byte but for \
     texels on a border of slices. Placement by hits has none of them, as it takes the surface itself, and is what mends them.\n";

@@ -331,9 +331,9 @@ fn lamps_above_and_under_water_light_by_planes_too() {
     // Mean tilt that the waves give a ray: mean |slope| times 1 − 1/n.
     const WAVE_TILT: f64 = 0.04;
     for (position_m, seen_from_m, wave_tilt) in [
-        // 1.5 m of air are n times as much of water.
-        ([0.3, 1.5, 0.2], 1.0 + 1.5 * 1.333, WAVE_TILT),
-        ([0.25, -0.2, 0.15], 0.85, 0.0),
+        // From the part that is nearest: there rays are tilted most. 1.5 m of air are n times as much of water.
+        ([0.3, 1.5, 0.2], 1.0 + 1.5 * 1.333 - RADIUS_M, WAVE_TILT),
+        ([0.25, -0.2, 0.15], 0.85 - RADIUS_M, 0.0),
     ] {
         let output = json!({ "kind": "irradiance_map", "receiver": 0 });
         let map = |quality: Value| {
