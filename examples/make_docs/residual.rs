@@ -8,7 +8,10 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use caustica::accuracy::error_images::error_images;
-use caustica::accuracy::study::{LinearImage, Point, Study, StudyImages, Sweep};
+use caustica::accuracy::study::{
+    CostFigures, ErrorFigures, LinearImage, Point, SpreadMs, Study, StudyImages, Sweep,
+    TruthFigures,
+};
 use caustica::accuracy::words::{percent, signed_percent};
 use caustica::experiment::{Way, scene};
 use caustica::reference::{Truth, TruthSettings, truth};
@@ -64,10 +67,11 @@ pub(crate) fn chapter(
             };
             let truth = truth(&base, &settings, &|_| {}, &|| false)?;
             let rim = rim(&truth);
-            let mut images = Vec::new();
+            let (mut images, mut costs) = (Vec::new(), Vec::new());
             let mut parts_of = |way: Way| -> Result<Parts, Box<dyn Error>> {
-                let image = render(renderer, &way.of(&base))?;
+                let (image, ms) = render(renderer, &way.of(&base))?;
                 let parts = parts(&image, &truth, &rim);
+                costs.push((parts.inner + parts.rim, ms));
                 images.push(image);
                 Ok(parts)
             };
@@ -90,7 +94,7 @@ pub(crate) fn chapter(
             );
             if (texels, waves) == (64, 1.0) {
                 images.truncate(PLANES.len());
-                let png = sheet(name, &base, &truth, images)?;
+                let png = sheet(name, &base, &truth, images, &costs)?;
                 std::fs::write(folder.join(format!("{name}_residual.png")), png)?;
             }
         }
@@ -137,19 +141,21 @@ fn rim(truth: &Truth) -> Vec<bool> {
 fn render(
     renderer: &RefCell<Renderer>,
     scene: &ResolvedScene,
-) -> Result<LinearImage, Box<dyn Error>> {
+) -> Result<(LinearImage, SpreadMs), Box<dyn Error>> {
     let frame = renderer
         .borrow_mut()
         .render(scene, &CancellationToken::new())?;
     let layer = &frame.layers[&LayerName::Irradiance];
     let pixels = layer.data.chunks_exact(layer.channels);
-    Ok(LinearImage {
+    let ms = SpreadMs::of(vec![frame.stats.time_ms.total]).unwrap_or_default();
+    let image = LinearImage {
         width: frame.width,
         height: frame.height,
         rgb: pixels
             .map(|p| std::array::from_fn(|c| f64::from(p[c])))
             .collect(),
-    })
+    };
+    Ok((image, ms))
 }
 
 fn parts(image: &LinearImage, truth: &Truth, rim: &[bool]) -> Parts {
@@ -186,16 +192,31 @@ fn sheet(
     base: &ResolvedScene,
     truth: &Truth,
     images: Vec<LinearImage>,
+    costs: &[(f64, SpreadMs)],
 ) -> Result<Vec<u8>, Box<dyn Error>> {
-    let point = |planes: u32| Point {
+    let point = |(&planes, &(relative_l1, ms)): (&u32, &(f64, SpreadMs))| Point {
         dials: BTreeMap::from([("planes".to_owned(), json!(planes))]),
+        error: ErrorFigures {
+            relative_l1,
+            ..ErrorFigures::default()
+        },
+        cost: CostFigures {
+            runs: 1,
+            wall_ms: ms,
+            gpu_ms: ms,
+            ..CostFigures::default()
+        },
         ..Point::default()
     };
     let study = Study {
         scene: name.to_owned(),
+        truth: TruthFigures {
+            relative_error: truth.relative_error,
+            ..TruthFigures::default()
+        },
         sweeps: vec![Sweep {
             dial: "planes".to_owned(),
-            points: PLANES.map(point).to_vec(),
+            points: PLANES.iter().zip(costs).map(point).collect(),
             order: None,
         }],
         ..Study::default()
