@@ -11,6 +11,8 @@ use caustica::reference::{TruthSettings, truth};
 use caustica::render::Renderer;
 use tokio_util::sync::CancellationToken;
 
+use super::{layers, residual};
+
 /// What to ask for to have this page only.
 pub(crate) const NAME: &str = "level_maps";
 
@@ -44,7 +46,7 @@ pub(crate) fn write() -> Result<(), Box<dyn Error>> {
         one.meshes.splice(0..0, before);
         found = one;
     }
-    write_page(&found)
+    write_page(&found, &renderer)
 }
 
 /// A shape's figures: those of an earlier run of this version with the same settings, or measured now.
@@ -86,7 +88,7 @@ fn kept_or_measured(
     Ok(found)
 }
 
-fn write_page(found: &Experiment) -> Result<(), Box<dyn Error>> {
+fn write_page(found: &Experiment, renderer: &RefCell<Renderer>) -> Result<(), Box<dyn Error>> {
     let folder = Path::new("docs/level-maps");
     std::fs::create_dir_all(folder)?;
     std::fs::write(folder.join("level_maps.csv"), experiment::to_csv(found))?;
@@ -99,10 +101,10 @@ fn write_page(found: &Experiment) -> Result<(), Box<dyn Error>> {
             std::fs::write(folder.join(format!("{stem}.svg")), plot.svg)?;
         }
     }
-    std::fs::write(
-        "docs/level-maps.md",
-        experiment::to_markdown(found, "level-maps/"),
-    )?;
+    let mut page = experiment::to_markdown(found, "level-maps/");
+    page.push_str(&residual::chapter(renderer, folder)?);
+    page.push_str(&layers::chapter(renderer)?);
+    std::fs::write("docs/level-maps.md", page)?;
     eprintln!("docs/level-maps.md");
     Ok(())
 }

@@ -5,8 +5,10 @@
 //! which the page names.
 
 mod hard_cases;
+mod layers;
 mod level_maps;
 mod page;
+mod residual;
 mod scenes;
 mod wishes;
 

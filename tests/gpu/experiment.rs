@@ -1,6 +1,6 @@
 //! The thesis's experiment on a small scale, from scene to files.
 
-use caustica::experiment::{self, Settings};
+use caustica::experiment::{self, Settings, WayFigures};
 use caustica::reference::{TruthSettings, truth};
 
 use super::harness::{renderer, try_render};
@@ -45,6 +45,21 @@ fn the_thesis_done_again_on_a_small_scale() {
             assert!(figures.own_ms.unwrap() <= figures.ms.max);
         }
         assert!(p.volumetric.peak_bytes > p.uniform.peak_bytes);
+    }
+    // Memory of slices grows with the planes by an image each, that of level maps by two words each.
+    let (few, many) = (&mesh.planes[0], &mesh.planes[2]);
+    let images = u64::from(many.planes - few.planes) * 4 * 32 * 32;
+    let grown = |few: &WayFigures, many: &WayFigures| {
+        let by_allocator = many.allocated_bytes.unwrap() - few.allocated_bytes.unwrap();
+        let by_account = many.peak_bytes - few.peak_bytes;
+        println!("{by_allocator} bytes more by the allocator, {by_account} by our account");
+        [by_allocator, by_account]
+    };
+    for more in grown(&few.volumetric, &many.volumetric) {
+        assert!(more >= images && more <= 2 * images, "{more} of {images}");
+    }
+    for more in grown(&few.uniform, &many.uniform) {
+        assert!(more <= images / 16, "{more} of {images}");
     }
     let error = |k: usize| mesh.planes[k].smart.error.unwrap();
     assert!(
