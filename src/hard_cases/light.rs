@@ -25,16 +25,14 @@ pub(super) const CASES: &[Case] = &[
     }),
     Light.case("sun_at_1_degree", GRAZING, CLOSED_FORM, 1e-4, |b| {
         flat_error(b, flat(1.0))
-    })
-    .known_to_fail("1.4e-4: the error grows as the sun sinks, its cause is not found yet"),
+    }),
     Light.case(
         "sun_at_a_hundredth_of_a_degree",
         GRAZING,
         CLOSED_FORM,
         2e-4,
         |b| flat_error(b, flat(0.01)),
-    )
-    .known_to_fail("7.6e-3: the error grows as the sun sinks, its cause is not found yet"),
+    ),
     Light.case("sun_on_the_horizon", "0/0 in refraction", DARK, 0.0, |b| {
         dark(b, flat(0.0))
     }),

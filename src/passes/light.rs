@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 
 use super::gpu_data::{Light, Receiver, vec2, vec4};
 use super::maps::MapLayout;
+use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::solid_angle::solid_angle;
 use crate::scene::facts::{SceneFacts, SunFacts};
 use crate::scene::source::Source;
@@ -263,8 +264,8 @@ pub fn places_by_planes(facts: &SceneFacts) -> bool {
     facts.quality.has_planes() && facts.wet_objects().next().is_some()
 }
 
-/// Whether narrow sums would be too coarse for a light from the start: very many beams on a texel, texels under a beam, or beams
-/// in very small parts.
+/// Whether narrow sums would be too coarse for a light from the start: very many beams on a texel, texels under a beam, beams
+/// in very small parts, or beams that a low sun's reflection leaves little of.
 pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     // What planes land is not what rays take away: a sum that has wrapped would not be told from that.
     if places_by_planes(facts) {
@@ -287,9 +288,14 @@ pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     {
         return true;
     }
-    scale * largest_beam(facts, &facts.suns[index]) < FINE_COUNTS.max(PART_COUNTS * parts)
-        || scale * coarsest < FINE_COUNTS
-        || scale * finest < FINEST_MAP_COUNTS
+    // What is summed is what goes into the water: at 1° of elevation a sixteenth, at a hundredth of that a two-thousandth.
+    let entering = match sun.source {
+        Source::Sun { to_light } => fresnel_transmittance(to_light.y, facts.ior),
+        Source::Point { .. } | Source::Submerged { .. } => 1.0,
+    };
+    scale * largest_beam(facts, sun) * entering < FINE_COUNTS.max(PART_COUNTS * parts)
+        || scale * coarsest * entering < FINE_COUNTS
+        || scale * finest * entering < FINEST_MAP_COUNTS
 }
 
 /// Whether narrow sums of a light have wrapped: what landed is then short by at least one whole 2³² counts.
