@@ -284,8 +284,8 @@ pub fn places_by_planes(facts: &SceneFacts) -> bool {
     facts.quality.has_planes() && facts.wet_objects().next().is_some()
 }
 
-/// Whether narrow sums would be too coarse for a light from the start: very many beams on a texel, texels under a beam, or beams
-/// in very small parts.
+/// Whether narrow sums would be too coarse for a light from the start: very many beams on a texel, texels under a beam, beams
+/// in very small parts, or beams that a low sun's reflection leaves little of.
 pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     // What planes land is not what rays take away: a sum that has wrapped would not be told from that.
     if places_by_planes(facts) {
