@@ -83,14 +83,6 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     },
     ShaderPlant {
         family: "mesh",
-        file: "shared/level_maps.wgsl",
-        from: "if level == 0u && is_edge_texel(r.level_map_offset, r.map_width, cell) { return AT_EDGE; }",
-        to: "",
-        cases: &["a_rod_thinner_than_a_map_texel"],
-        what: "silhouettes are as coarse as the level map",
-    },
-    ShaderPlant {
-        family: "mesh",
         file: "passes/split.wgsl",
         from: "(sum - own) * 0.5, i >= 3u",
         to: "(sum + own) * 0.5, i >= 3u",
