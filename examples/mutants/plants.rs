@@ -5,9 +5,9 @@
 pub(crate) struct Plant {
     /// Source file, from the root of the project.
     pub(crate) file: &'static str,
-    /// What stands there; occurs exactly once.
+    /// What stands there, a whole expression or a statement; occurs exactly once.
     pub(crate) from: &'static str,
-    /// What is put there instead.
+    /// What is put there instead, of the same type.
     pub(crate) to: &'static str,
     /// `cpu` or `gpu`: the tests in that folder of `tests`.
     pub(crate) binary: &'static str,
@@ -32,8 +32,8 @@ pub(crate) const ALL: &[Plant] = &[
     },
     Plant {
         file: "src/reference/refract.rs",
-        from: "let cosine = cos * c - sin * s;",
-        to: "let cosine = cos * c + sin * s;",
+        from: "cos * c - sin * s",
+        to: "cos * c + sin * s",
         binary: "cpu",
         tests: &[
             "reference::waves_under_a_low_sun_are_what_single_rays_say",
@@ -62,8 +62,8 @@ pub(crate) const ALL: &[Plant] = &[
     },
     Plant {
         file: "src/accuracy/metrics.rs",
-        from: "map(|(a, b)| (a - b).abs()).sum()",
-        to: "map(|(a, b)| a - b).sum()",
+        from: "pairs.iter().map(|(a, b)| (a - b).abs()).sum()",
+        to: "pairs.iter().map(|(a, b)| a - b).sum()",
         binary: "cpu",
         tests: &["accuracy_metrics::every_figure_rejects_wrong_images"],
         what: "errors of opposite signs cancel in the relative L1 error",
@@ -86,8 +86,8 @@ pub(crate) const ALL: &[Plant] = &[
     },
     Plant {
         file: "src/waves/mod.rs",
-        from: "- reduce_turns(turns_per_s * scene.time_s),",
-        to: "- reduce_turns(f64::from((turns_per_s * scene.time_s) as f32)),",
+        from: "reduce_turns(turns_per_s * scene.time_s)",
+        to: "reduce_turns(f64::from((turns_per_s * scene.time_s) as f32))",
         binary: "gpu",
         tests: &[
             "hard_cases::water::a_period_after_a_million_seconds",
@@ -98,8 +98,8 @@ pub(crate) const ALL: &[Plant] = &[
     },
     Plant {
         file: "src/waves/mod.rs",
-        from: "+ reduce_turns(origin_m.x * c.frequency_per_m.x)",
-        to: "+ reduce_turns(f64::from((origin_m.x * c.frequency_per_m.x) as f32))",
+        from: "reduce_turns(origin_m.x * c.frequency_per_m.x)",
+        to: "reduce_turns(f64::from((origin_m.x * c.frequency_per_m.x) as f32))",
         binary: "gpu",
         tests: &["hard_cases::place::moved_by_100_km"],
         what: "waves far from the origin are in f32",

@@ -32,7 +32,10 @@ pub(crate) fn page(
     );
     for (plant, noticed) in shader_plants.iter().zip(noticed) {
         let red: Vec<String> = noticed.red.iter().map(|name| code(name)).collect();
-        let mut by = format!("{} of {}: {}", red.len(), noticed.of, red.join(", "));
+        let mut by = format!("{} of {}", red.len(), noticed.of);
+        if !red.is_empty() {
+            let _ = write!(by, ": {}", red.join(", "));
+        }
         for name in &noticed.missing {
             let _ = write!(by, ", **not {name}**");
         }

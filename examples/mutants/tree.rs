@@ -1,4 +1,4 @@
-//! A copy of the project to plant things in.
+//! A copy of the project with all plants in it, each asleep until an environment variable names it: one build serves them all.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -15,16 +15,23 @@ pub(crate) struct Tree {
     pub(crate) target: PathBuf,
 }
 
-/// A plant in its place, until it is removed.
-pub(crate) struct Planted {
-    file: PathBuf,
-    before: String,
+/// Tells a test program which plant is awake: its place in the list, from 1.
+pub(crate) const AWAKE: &str = "CAUSTICA_PLANT";
+
+/// What plants ask, at the end of the copy's `src/lib.rs`.
+const SWITCH: &str = r#"
+/// Whether this plant is awake.
+pub(crate) fn planted(number: usize) -> bool {
+    static AWAKE: std::sync::OnceLock<Option<usize>> = std::sync::OnceLock::new();
+    let read = || std::env::var("CAUSTICA_PLANT").ok()?.parse().ok();
+    *AWAKE.get_or_init(read) == Some(number)
 }
+"#;
 
 impl Tree {
-    /// Copies what git knows, and what it does not ignore, as it is in `project` now. Files that are the same already are left
-    /// alone, so that a second run builds less.
-    pub(crate) fn copy(project: &Path) -> io::Result<Self> {
+    /// Copies what git knows, and what it does not ignore, as it is in `project` now, and puts the plants in. Files that are the same
+    /// already are left alone, so that a second run builds less.
+    pub(crate) fn copy(project: &Path, plants: &[Plant]) -> io::Result<Self> {
         let own = std::env::var_os("CARGO_TARGET_DIR")
             .map_or_else(|| project.join("target"), |target| project.join(target));
         let target = std::env::var_os("CAUSTICA_MUTANTS_TARGET").map_or_else(
@@ -44,19 +51,14 @@ impl Tree {
         let names = listed(project)?;
         for name in &names {
             let (from, to) = (project.join(name), tree.root.join(name));
-            let content = std::fs::read(&from)?;
+            let content = planted(name, std::fs::read(&from)?, plants)?;
             if std::fs::read(&to).is_ok_and(|there| there == content) {
                 continue;
             }
             if let Some(parent) = to.parent() {
                 std::fs::create_dir_all(parent)?;
             }
-            std::fs::copy(&from, &to)?;
-            // A copied file may look older than what was built from the one before it.
-            std::fs::File::options()
-                .append(true)
-                .open(&to)?
-                .set_modified(std::time::SystemTime::now())?;
+            std::fs::write(&to, content)?;
         }
         remove_others(&tree.root, &tree.root, &names)?;
         if !tree.target.join("release").is_dir() {
@@ -64,28 +66,41 @@ impl Tree {
         }
         Ok(tree)
     }
+}
 
-    /// Puts `plant.to` where `plant.from` stands.
-    pub(crate) fn plant(&self, plant: &Plant) -> io::Result<Planted> {
-        let file = self.root.join(plant.file);
-        let before = std::fs::read_to_string(&file)?;
-        let count = before.matches(plant.from).count();
+/// A file with the plants that belong there.
+fn planted(name: &Path, content: Vec<u8>, plants: &[Plant]) -> io::Result<Vec<u8>> {
+    let here = |plant: &Plant| Path::new(plant.file) == name;
+    let is_root = name == Path::new("src/lib.rs");
+    if !is_root && !plants.iter().any(here) {
+        return Ok(content);
+    }
+    let mut text = String::from_utf8(content).map_err(io::Error::other)?;
+    for (index, plant) in plants.iter().enumerate().filter(|(_, plant)| here(plant)) {
+        let count = text.matches(plant.from).count();
         if count != 1 {
             return Err(io::Error::other(format!(
                 "{} says `{}` {count} times; it must be once",
                 plant.file, plant.from
             )));
         }
-        std::fs::write(&file, before.replacen(plant.from, plant.to, 1))?;
-        Ok(Planted { file, before })
+        let (from, to) = (plant.from, plant.to);
+        let both = format!(
+            "if crate::planted({}) {{ {to} }} else {{ {from} }}",
+            index + 1
+        );
+        // A statement is one with the `if`, a part of an expression stays one.
+        let both = if from.ends_with(';') {
+            both
+        } else {
+            format!("({both})")
+        };
+        text = text.replacen(from, &both, 1);
     }
-}
-
-impl Planted {
-    /// Puts the file back as it was.
-    pub(crate) fn remove(self) -> io::Result<()> {
-        std::fs::write(&self.file, &self.before)
+    if is_root {
+        text.push_str(SWITCH);
     }
+    Ok(text.into_bytes())
 }
 
 /// Copies what the project's own builds have left of other packages: only the project itself is then built anew. Cargo looks at

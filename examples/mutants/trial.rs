@@ -1,4 +1,4 @@
-//! Building a planted copy, and running the tests that must notice.
+//! Building the planted copy, and running the tests that must notice.
 
 use std::fmt;
 use std::io;
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use super::tree::Tree;
+use super::tree::{self, Tree};
 
 /// Time after which tests are ended: a plant may make a loop endless.
 const LONGEST: Duration = Duration::from_secs(20 * 60);
@@ -20,8 +20,6 @@ pub(crate) enum Outcome {
     Caught(Vec<String>),
     /// All tests passed.
     Survived,
-    /// It does not build: that says nothing about the tests.
-    DoesNotBuild(String),
     /// The tests ended without a verdict, or not at all.
     NoVerdict(String),
 }
@@ -38,7 +36,6 @@ impl fmt::Display for Outcome {
         match self {
             Self::Caught(tests) => write!(f, "caught by {}", tests.join(", ")),
             Self::Survived => write!(f, "SURVIVED"),
-            Self::DoesNotBuild(why) => write!(f, "DOES NOT BUILD: {why}"),
             Self::NoVerdict(why) => write!(f, "NO VERDICT: {why}"),
         }
     }
@@ -59,16 +56,8 @@ impl Workshop {
         }
     }
 
-    /// Builds the tests of `tests/<binary>` and runs those named.
-    pub(crate) fn test(&self, binary: &str, tests: &[&str]) -> io::Result<Outcome> {
-        match self.build(binary)? {
-            Ok(program) => self.run(&program, tests),
-            Err(why) => Ok(Outcome::DoesNotBuild(why)),
-        }
-    }
-
     /// The test program, or what the compiler says.
-    fn build(&self, binary: &str) -> io::Result<Result<PathBuf, String>> {
+    pub(crate) fn build(&self, binary: &str) -> io::Result<Result<PathBuf, String>> {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let output = Command::new(cargo)
             .args([
@@ -80,7 +69,7 @@ impl Workshop {
                 binary,
             ])
             .arg("--message-format=json-render-diagnostics")
-            // A plant is built more often than it is run.
+            // Tests of a plant are short: the build takes longer than all of them.
             .args(["--config", "profile.release.package.caustica.opt-level=1"])
             .args([
                 "--config",
@@ -104,10 +93,19 @@ impl Workshop {
         Ok(program.ok_or_else(|| format!("error: cargo has built no tests `{binary}`")))
     }
 
-    /// Runs tests by their full names.
-    fn run(&self, program: &Path, tests: &[&str]) -> io::Result<Outcome> {
+    /// Runs tests by their full names, with one plant awake.
+    pub(crate) fn run(
+        &self,
+        program: &Path,
+        tests: &[&str],
+        awake: Option<usize>,
+    ) -> io::Result<Outcome> {
         let log = self.target.join("mutants.log");
-        let mut child = Command::new(program)
+        let mut command = Command::new(program);
+        if let Some(number) = awake {
+            command.env(tree::AWAKE, number.to_string());
+        }
+        let mut child = command
             .arg("--exact")
             .args(tests)
             .current_dir(&self.root)

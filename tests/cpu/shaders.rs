@@ -216,7 +216,8 @@ fn samples_keep_to_the_domain_and_reach_its_edges() {
         let samples = registry::samples(twin, 2000);
         assert!(samples.len() >= 2000);
         for (k, domain) in twin.domain.iter().enumerate() {
-            let inside = |v: f64| v >= domain.low - 1e-6 && v <= domain.high + 1e-6;
+            let f32_of = |end: f64| f64::from(end as f32);
+            let inside = |v: f64| v >= f32_of(domain.low) && v <= f32_of(domain.high);
             assert!(samples.iter().all(|args| inside(args[k])), "{}", twin.name);
             for edge in domain.edges {
                 let edge = f64::from(*edge as f32);
