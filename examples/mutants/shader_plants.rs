@@ -112,14 +112,6 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     ShaderPlant {
         family: "fold",
         file: "shared/footprint.wgsl",
-        from: "if is_segment(a, b, c) { return deposit_segment(target_map, a, b, c, triangle_flux); }",
-        to: "if is_segment(a, b, c) { return 0.0; }",
-        cases: &["sums_beyond_32_bits"],
-        what: "footprints without area lose their flux",
-    },
-    ShaderPlant {
-        family: "fold",
-        file: "shared/footprint.wgsl",
         from: "+ edges.dy.z * mean_clamped(",
         to: "- edges.dy.z * mean_clamped(",
         cases: &["footprints_of_millions_of_texels"],
