@@ -104,4 +104,12 @@ pub(crate) const ALL: &[Plant] = &[
         tests: &["hard_cases::place::moved_by_100_km"],
         what: "waves far from the origin are in f32",
     },
+    Plant {
+        file: "src/gpu/pieces.rs",
+        from: "wide(self.first)",
+        to: "wide([0; 3])",
+        binary: "gpu",
+        tests: &["hard_cases::machine::every_dispatch_in_pieces"],
+        what: "every piece of a dispatch does the first one's work",
+    },
 ];

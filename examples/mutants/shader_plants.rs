@@ -33,8 +33,8 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     ShaderPlant {
         family: "light",
         file: "shared/resolve.wgsl",
-        from: "* resolve.power[channel];",
-        to: "* resolve.power[0];",
+        from: "* resolve.power.xyz;",
+        to: "* resolve.power.xxx;",
         cases: &["one_dark_channel"],
         what: "all channels get the power of the first",
     },

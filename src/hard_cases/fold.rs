@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::case::Case;
 use super::case::Family::Fold;
+use super::case::{Case, Failure};
 use super::truths::{flat_error, largest_relative, pool, reference_error, sun, waves, with};
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
@@ -82,7 +82,7 @@ pub(super) const CASES: &[Case] = &[
                     json!({ "kind": "sine", "amplitude_m": amplitude_m, "wavelength_m": 1.0, "direction_deg": direction, "phase_deg": 90 })
                 });
                 with(
-                    sized(256, 512, 512),
+                    sized(256, 1024, 1024),
                     &[
                         ("/water/waves", json!(waves)),
                         (
@@ -95,7 +95,12 @@ pub(super) const CASES: &[Case] = &[
                     ],
                 )
             };
+            b.scene(scene(1.0))?;
+            let before = b.renderer()?.wide_sum_reruns();
             let one = b.map(scene(1.0))?;
+            if b.renderer()?.wide_sum_reruns() == before {
+                return Err(Failure::Check("no sum has wrapped".to_owned()));
+            }
             let large: Vec<[f64; 3]> = b
                 .map(scene(1e9))?
                 .iter()

@@ -93,4 +93,6 @@ fn reference_metrics_choices_and_every_family_are_planted() {
         let planted = shader_plants::ALL.iter().filter(|p| p.family == family);
         assert!(planted.count() > 0, "nothing is planted for {family}");
     }
+    let mut tests = plants::ALL.iter().flat_map(|plant| plant.tests);
+    assert!(tests.any(|test| test.starts_with("hard_cases::machine::")));
 }
