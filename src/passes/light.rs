@@ -288,7 +288,7 @@ pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     {
         return true;
     }
-    // What is summed is what goes into the water: at 1° of elevation a sixteenth, at a hundredth of that a two-thousandth.
+    // What is summed is what goes into the water: at 1° of elevation a tenth, at a hundredth of that a thousandth.
     let entering = match sun.source {
         Source::Sun { to_light } => fresnel_transmittance(to_light.y, facts.ior),
         Source::Point { .. } | Source::Submerged { .. } => 1.0,
