@@ -124,7 +124,7 @@ const EXPLANATION: &str = "\nThree errors add up, and only the first goes with t
 
 /// Texels with a surface that have a neighbour without.
 fn rim(truth: &Truth) -> Vec<bool> {
-    let (width, height) = (truth.width as i64, truth.height as i64);
+    let (width, height) = (i64::from(truth.width), i64::from(truth.height));
     let has = |x: i64, y: i64| {
         (0..width).contains(&x)
             && (0..height).contains(&y)

@@ -101,12 +101,10 @@ fn deposit_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
             losses.landed += sums.losses.landed;
         }
     }
-    if light.kind == POINT {
-        // To a near light far cells are smaller than the near ones by many powers of ten.
-        atomicMax(&largest, bitcast<u32>(emitted));
-        workgroupBarrier();
-        finer = finer_for(bitcast<f32>(atomicLoad(&largest)));
-    }
+    // To a near light far cells are smaller than the near ones by many powers of ten, and so are those that a low sun hardly sees.
+    atomicMax(&largest, bitcast<u32>(emitted));
+    workgroupBarrier();
+    finer = finer_for(bitcast<f32>(atomicLoad(&largest)));
     note_term(TERM_EMITTED, emitted);
     note_term(TERM_REFLECTED, reflected);
     note_losses(losses);

@@ -22,6 +22,7 @@
 #import "shared/flux.wgsl"
 #import "shared/deposit_share.wgsl"
 #import "shared/footprint.wgsl"
+#import "shared/wide_footprint.wgsl"
 #import "shared/beam_triangle.wgsl"
 #import "shared/unit_flux.wgsl"
 #import "shared/grid.wgsl"
@@ -33,6 +34,10 @@ struct Split {
     source: u32,       // first word of what is to be halved
     destination: u32,  // first word of what is left for the next level
     capacity: u32,     // parts that fit there
+    wide: u32,         // first word of the footprints that get workgroups of their own
+    wide_capacity: u32,
+    pad_0: u32,
+    pad_1: u32,
 }
 
 @group(0) @binding(6) var<storage, read_write> split_queue: array<atomic<u32>>;
@@ -108,6 +113,80 @@ fn part_of(points: ptr<function, array<Corner, 6>>, k: u32) -> Beam {
     return b;
 }
 
+// Where the light of a part goes: to the receiver of corner `k`. Where its corners end on different receivers, each carries a third of
+// the flux to its own, over the footprint that the whole part has at that depth.
+struct Piece {
+    receiver: i32,  // NO_RECEIVER: it meets none
+    uv: mat3x2f,
+    lengths_m: vec3f,
+}
+
+fn piece_of(b: Beam, k: i32, is_torn: bool) -> Piece {
+    var piece = Piece(b.receiver[k], b.uv, b.t);
+    if b.receiver[k] == NO_RECEIVER || (!is_torn && ends_nowhere(b)) {
+        piece.receiver = NO_RECEIVER;
+        return piece;
+    }
+    if !is_torn { return piece; }
+    piece.lengths_m = vec3f(b.t[k]);
+    let r = receivers[b.receiver[k]];
+    for (var corner = 0; corner < 3; corner++) {
+        var t = b.t[k];
+        if b.receiver[k] == FLOOR {
+            let own = floor_distance(r, b.origin[corner], b.direction[corner]);
+            t = select(t, own, own >= 0.0);
+        }
+        piece.uv[corner] = map_uv(r, b.origin[corner], b.direction[corner], t);
+    }
+    return piece;
+}
+
+// A queued footprint: beam, and path with 2 bits per halving, then from bit 16 on the halvings (4 bits), whether it is torn (1), and
+// its corner (2).
+fn wide_word(path: u32, level: u32, is_torn: bool, k: i32) -> u32 {
+    return path | (level << 16u) | (u32(is_torn) << 20u) | (u32(k) << 21u);
+}
+
+// Queues a footprint for workgroups of its own; false where there is no room left.
+fn push_wide(beam_index: u32, word: u32) -> bool {
+    let slot = atomicAdd(&split_queue[SPLIT_WIDE_COUNT], 1u);
+    if slot >= split.wide_capacity { return false; }
+    let at = split.wide + 2u * slot;
+    atomicStore(&split_queue[at], beam_index);
+    atomicStore(&split_queue[at + 1u], word);
+    atomicMax(&split_queue[SPLIT_WIDE_GROUPS], min(slot + 1u, MOST_GROUPS));
+    atomicMax(&split_queue[SPLIT_WIDE_GROUPS + 1u], SPLIT_WIDE_SHARE);
+    atomicMax(&split_queue[SPLIT_WIDE_GROUPS + 2u], 1u);
+    return true;
+}
+
+// Lays a part of a beam that `path` and `level` lead to. There is one place that deposits, see `deposit_area`.
+fn deposit_part(b: Beam, is_torn: bool, beam_index: u32, path: u32, level: u32) -> Losses {
+    var losses = NO_LOSSES;
+    let pieces = select(1, 3, is_torn);
+    let flux = b.transmitted / f32(pieces);
+    for (var k = 0; k < pieces; k++) {
+        let piece = piece_of(b, k, is_torn);
+        if piece.receiver == NO_RECEIVER {
+            losses.missed += flux;
+            continue;
+        }
+        if PLANES && piece.receiver > FLOOR { continue; }
+        let target_map = target_of(receivers[piece.receiver]);
+        let arriving = flux * mean_transmission(piece.lengths_m);
+        losses.extinguished += flux * mean_extinction(piece.lengths_m);
+        if target_map.offset == NOWHERE {
+            losses.landed += arriving;
+            continue;
+        }
+        let box = texel_box(target_map, piece.uv[0], piece.uv[1], piece.uv[2]);
+        let extent = vec2u(box.last - box.first + 1);
+        if extent.x * extent.y > light.wide_texels && push_wide(beam_index, wide_word(path, level, is_torn, k)) { continue; }
+        losses.left += arriving * deposit_triangle(target_map, piece.uv[0], piece.uv[1], piece.uv[2], arriving);
+    }
+    return losses;
+}
+
 fn push_part(beam_index: u32, path: u32) {
     let slot = atomicAdd(&split_queue[QUEUE_COUNT + split.level], 1u);
     let word = split.destination + 2u * slot;
@@ -157,7 +236,8 @@ fn halve(beam_index: u32, path: u32, is_last: bool) {
             atomicAdd(&energy[2u * TERM_TORN_COUNT], 1u);
             if split.level < light.split_levels { add_energy(TERM_CUT, b.transmitted * light.energy_scale); }
         }
-        note_losses(deposit_part(b, straddles));
+        let own_path = select(4u * path + k, 0u, is_whole_beam);
+        note_losses(deposit_part(b, straddles, beam_index, own_path, split.level));
     }
 }
 
@@ -180,4 +260,35 @@ fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     }
     workgroupBarrier();
     flush_account(invocation);
+}
+
+// Some workgroups (along y) per wide footprint (along x), as in `deposit_wide`; run with `split.level` 0, so that a part is its own
+// three corners.
+@compute @workgroup_size(64)
+fn split_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    let count = min(atomicLoad(&split_queue[SPLIT_WIDE_COUNT]), split.wide_capacity);
+    let lane = group.y * 64u + invocation;
+    for (var item = group.x; item < count; item += groups.x) {
+        let beam_index = atomicLoad(&split_queue[split.wide + 2u * item]);
+        let word = atomicLoad(&split_queue[split.wide + 2u * item + 1u]);
+        let c = part_corners(beam_index, word & 0xffffu, (word >> 16u) & 15u);
+        var points: array<Corner, 6>;
+        for (var i = 0u; i < 3u; i++) { points[i] = corner_at(c[i]); }
+        let b = part_of(&points, 0u);
+        let is_torn = ((word >> 20u) & 1u) == 1u;
+        let piece = piece_of(b, i32((word >> 21u) & 3u), is_torn);
+        let target_map = target_of(receivers[piece.receiver]);
+        let arriving = b.transmitted / select(1.0, 3.0, is_torn) * mean_transmission(piece.lengths_m);
+        var beside = 0.0;
+        if is_segment(piece.uv[0], piece.uv[1], piece.uv[2]) {
+            if lane == 0u { beside = deposit_segment(target_map, piece.uv[0], piece.uv[1], piece.uv[2], arriving); }
+        } else {
+            beside = deposit_texels(target_map, piece.uv, arriving, lane, groups.y * 64u);
+        }
+        if beside > 0.0 {
+            for (var channel = 0u; channel < light.channels; channel++) {
+                add_energy(TERM_LEFT + channel, arriving[channel] * beside * light.energy_scale);
+            }
+        }
+    }
 }

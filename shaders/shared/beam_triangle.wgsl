@@ -48,39 +48,3 @@ struct Losses {
 }
 
 const NO_LOSSES: Losses = Losses(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
-
-// Lays a part of a beam. Where its corners end on different receivers, each carries a third of the flux to its own, over the
-// footprint that the whole part has at that depth. There is one place that deposits, see `deposit_area`.
-fn deposit_part(b: Beam, is_torn: bool) -> Losses {
-    var losses = NO_LOSSES;
-    let pieces = select(1, 3, is_torn);
-    let flux = b.transmitted / f32(pieces);
-    for (var k = 0; k < pieces; k++) {
-        if b.receiver[k] == NO_RECEIVER || (!is_torn && ends_nowhere(b)) {
-            losses.missed += flux;
-            continue;
-        }
-        if PLANES && b.receiver[k] > FLOOR { continue; }
-        let r = receivers[b.receiver[k]];
-        var uv = b.uv;
-        let lengths_m = select(b.t, vec3f(b.t[k]), is_torn);
-        let arriving = flux * mean_transmission(lengths_m);
-        losses.extinguished += flux * mean_extinction(lengths_m);
-        if r.map_offset == NOWHERE {
-            losses.landed += arriving;
-            continue;
-        }
-        if is_torn {
-            for (var corner = 0; corner < 3; corner++) {
-                var t = b.t[k];
-                if b.receiver[k] == FLOOR {
-                    let own = floor_distance(r, b.origin[corner], b.direction[corner]);
-                    t = select(t, own, own >= 0.0);
-                }
-                uv[corner] = map_uv(r, b.origin[corner], b.direction[corner], t);
-            }
-        }
-        losses.left += arriving * deposit_triangle(target_of(r), uv[0], uv[1], uv[2], arriving);
-    }
-    return losses;
-}

@@ -115,7 +115,7 @@ pub fn measure(
             );
             let mut hit = Way::Hit.of(&base);
             hit.scene.quality.water_cells = water_cells;
-            let [way] = timed([hit], settings.runs, render)?;
+            let [way] = timed(&[hit], settings.runs, render)?;
             experiment.adapter = way.frame.stats.adapter.clone();
             let figures = way.figures(truth)?;
             result.hits.push(HitPoint {
@@ -140,8 +140,11 @@ fn plane_point(
         Way::Uniform(planes),
         Way::Smart(planes),
     ];
-    let [volumetric, uniform, smart] = timed(ways.map(|way| way.of(base)), runs, render)?;
-    let white_w_m2 = std::f64::consts::PI * SceneFacts::of(base).map_err(refused)?.white_radiance;
+    let [volumetric, uniform, smart] = timed(&ways.map(|way| way.of(base)), runs, render)?;
+    let white_w_m2 = std::f64::consts::PI
+        * SceneFacts::of(base)
+            .map_err(|error| refused(&error))?
+            .white_radiance;
     let pictures = [&volumetric, &uniform, &smart].map(Measured::image);
     let compared: Vec<bool> = (0..pictures[1].rgb.len())
         .map(|at| pictures.iter().any(|picture| picture.rgb[at] != [0.0; 3]))
@@ -178,7 +181,7 @@ fn plane_point(
     })
 }
 
-fn refused(error: crate::scene::SceneError) -> ExperimentError {
+fn refused(error: &crate::scene::SceneError) -> ExperimentError {
     ExperimentError::Scene(error.to_string())
 }
 
@@ -190,12 +193,12 @@ struct Measured {
 
 /// Renders each scene once to warm up, then all in turns.
 fn timed<const N: usize>(
-    scenes: [ResolvedScene; N],
+    scenes: &[ResolvedScene; N],
     runs: u32,
     render: &mut Render<'_>,
 ) -> Result<[Measured; N], ExperimentError> {
     let mut all = Vec::with_capacity(N);
-    for scene in &scenes {
+    for scene in scenes {
         let frame = render(scene)?;
         all.push(Measured {
             frame,
@@ -269,7 +272,7 @@ fn memory_example() -> Result<MemoryExample, ExperimentError> {
     const OBJECTS: u64 = 100;
     const PLANES: u32 = 100;
     let scene = Way::Volumetric(PLANES).of(&scene("box", 2, 512)?);
-    let facts = SceneFacts::of(&scene).map_err(refused)?;
+    let facts = SceneFacts::of(&scene).map_err(|error| refused(&error))?;
     let level_map = crate::plan::level_maps(&facts)
         .first()
         .map_or(0, |key| key.bytes());

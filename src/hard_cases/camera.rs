@@ -166,10 +166,10 @@ pub(super) const CASES: &[Case] = &[
     ),
 ];
 
-fn camera(position_m: [f64; 3], target_m: [f64; 3], more: Value) -> Value {
+fn camera(position_m: [f64; 3], target_m: [f64; 3], mut more: Value) -> Value {
     let mut camera = json!({ "position_m": position_m, "target_m": target_m });
-    if let (Some(camera), Some(more)) = (camera.as_object_mut(), more.as_object()) {
-        camera.extend(more.clone());
+    if let (Some(camera), Some(more)) = (camera.as_object_mut(), more.as_object_mut()) {
+        camera.append(more);
     }
     with(
         pool(),

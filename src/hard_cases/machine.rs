@@ -186,17 +186,17 @@ fn view() -> Value {
 
 /// Lets the device be out of memory at every submission until `starved` is unset.
 fn keep_exhausted(renderer: &Renderer, starved: &Arc<AtomicBool>) {
-    fn again(device: wgpu::Device, queue: wgpu::Queue, starved: Arc<AtomicBool>) {
+    fn again(device: wgpu::Device, queue: &wgpu::Queue, starved: Arc<AtomicBool>) {
         let next = queue.clone();
         queue.on_submitted_work_done(move || {
             if starved.load(Ordering::Relaxed) {
                 exhaust(&device);
-                again(device, next, starved);
+                again(device, &next, starved);
             }
         });
     }
     let gpu = renderer.gpu();
-    again(gpu.device.clone(), gpu.queue.clone(), Arc::clone(starved));
+    again(gpu.device.clone(), &gpu.queue, Arc::clone(starved));
 }
 
 /// A queue like that of the service, whose device goes in the middle of the second frame.

@@ -56,6 +56,10 @@ gpu_struct! {
         source: u32,
         destination: u32,
         capacity: u32,
+        wide: u32,
+        wide_capacity: u32,
+        pad_0: u32,
+        pad_1: u32,
     }
 }
 

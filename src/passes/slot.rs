@@ -10,6 +10,8 @@ use crate::scene::placement::LevelMapKey;
 pub const QUEUE_HEAD_WORDS: u64 = 4;
 /// Words at the head of the split queue, whose levels have counts of their own.
 pub const SPLIT_HEAD_WORDS: u64 = 16;
+/// First of the words in that head that are the dispatch over wide footprints; before it is their count.
+pub const SPLIT_WIDE_WORD: u32 = 13;
 /// Parts of straddling beams that a level of the split queue holds, per cell along the window's side and for each doubling: enough
 /// for shadow edges that together are thirty times as long as the window's side.
 const PARTS_PER_CELL: u64 = 64;
@@ -327,7 +329,10 @@ impl Slot {
             Self::Surface | Self::Beams | Self::Hits => 16 * side * side,
             Self::WideQueue => 4 * (QUEUE_HEAD_WORDS + 2 * cells * cells),
             Self::SplitQueue => {
-                4 * (SPLIT_HEAD_WORDS + 2 * cells * cells + 4 * u64::from(split_parts(facts)))
+                4 * (SPLIT_HEAD_WORDS
+                    + 2 * cells * cells
+                    + 4 * u64::from(split_parts(facts))
+                    + 2 * u64::from(split_wides(facts)))
             }
             Self::BeamQueue => 4 * (CULL_HEAD_WORDS + 2 * cells * cells),
             Self::PlaneLists => 4 * plane_list_words(facts) * facts.objects.len() as u64,
@@ -419,6 +424,15 @@ pub fn split_parts(facts: &SceneFacts) -> u32 {
         .min(all)
         .min(MOST_PARTS);
     u32::try_from(parts).unwrap_or(u32::MAX)
+}
+
+/// Footprints of straddling beams that are queued for workgroups of their own: no more than there are beams and parts.
+pub fn split_wides(facts: &SceneFacts) -> u32 {
+    if facts.wet_objects().next().is_none() {
+        return 0;
+    }
+    let cells = facts.quality.water_cells;
+    (2 * cells * cells).saturating_add(split_parts(facts))
 }
 
 /// Bytes of the receivers of one sun.

@@ -51,6 +51,14 @@ pub const PASS: PassDesc = PassDesc {
                     ),
                 ],
             })
+            .chain([Step {
+                entry: "split_wide",
+                work: Work::Compute(Groups::QueueAt(Slot::SplitQueue, slot::SPLIT_WIDE_WORD)),
+                uniforms: vec![
+                    ("light", light.clone()),
+                    ("split", bytemuck::bytes_of(&level_of(facts, 0)).to_vec()),
+                ],
+            }])
             .collect()
     },
 };
@@ -67,5 +75,8 @@ fn level_of(facts: &SceneFacts, level: u32) -> Split {
         source: if level <= 1 { beams } else { list(level - 1) },
         destination: list(level),
         capacity,
+        wide: parts + 4 * capacity,
+        wide_capacity: slot::split_wides(facts),
+        ..Split::default()
     }
 }

@@ -170,7 +170,7 @@ impl Renderer {
                 12,
             );
         }
-        let cut = self.to_be_cut(encoder, pass.name, groups, buffers)?;
+        let cut = self.cut_of(encoder, pass.name, groups, buffers)?;
         let by_planes = facts.quality.has_planes();
         let key = (
             pass.name,

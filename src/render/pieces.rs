@@ -43,7 +43,7 @@ impl Cutting {
 impl Renderer {
     /// The workgroups of a dispatch that is to be cut and the most of its first piece; `None` where it runs in one go. What is in
     /// `encoder` is submitted where the GPU has to be asked how many there are.
-    pub(super) fn to_be_cut(
+    pub(super) fn cut_of(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         pass: &'static str,

@@ -85,6 +85,9 @@ fn figures_of_queues_and_maps_agree() {
     agrees("QUEUE_HEAD", slot::QUEUE_HEAD_WORDS as f64);
     agrees("QUEUE_COUNT", slot::QUEUE_HEAD_WORDS as f64 - 1.0);
     agrees("SPLIT_HEAD", slot::SPLIT_HEAD_WORDS as f64);
+    agrees("SPLIT_WIDE_SHARE", f64::from(slot::WIDE_GROUPS));
+    agrees("SPLIT_WIDE_COUNT", f64::from(slot::SPLIT_WIDE_WORD - 1));
+    agrees("SPLIT_WIDE_GROUPS", f64::from(slot::SPLIT_WIDE_WORD));
     agrees("CULL_HEAD", slot::CULL_HEAD_WORDS as f64);
     agrees("LIST_HEAD", slot::PLANE_LIST_HEAD_WORDS as f64);
     agrees("TILE", f64::from(slot::PLANE_TILE_TEXELS));

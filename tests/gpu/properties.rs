@@ -18,6 +18,9 @@ const CLOSURE: f64 = 1e-5;
 const AGAIN: u64 = 8;
 /// Least share of the scenes that must be rendered, not refused: else the generator asks for nonsense.
 const RENDERED: f64 = 0.8;
+/// Scenes that once failed: torn parts of beams as wide as the floor's map, which one invocation cannot lay alone; and beams of a low sun
+/// too small for the account of their workgroup.
+const ONCE_FAILED: [u64; 2] = [219, 422];
 
 /// SplitMix64 (Steele, Lea, Flood 2014): every seed gives another stream.
 struct Random(u64);
@@ -288,7 +291,7 @@ fn random_scenes_are_finite_closed_linear_and_the_same_again() {
     let mut renderer = renderer();
     let mut rendered = 0;
     let mut failed = Vec::new();
-    for seed in 0..cases {
+    for seed in (0..cases).chain(ONCE_FAILED) {
         let value = scene(&mut Random(seed));
         let checked = catch_unwind(AssertUnwindSafe(|| {
             check(&mut renderer, &store, &value, seed % AGAIN == 0)
