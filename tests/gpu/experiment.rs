@@ -1,13 +1,15 @@
 //! The thesis's experiment on a small scale, from scene to files.
 
+use caustica::config::RenderConfig;
 use caustica::experiment::{self, Settings, WayFigures};
 use caustica::reference::{TruthSettings, truth};
 
-use super::harness::{renderer, try_render};
+use super::harness::{new_renderer, try_render};
 
 #[test]
 fn the_thesis_done_again_on_a_small_scale() {
-    let mut renderer = renderer();
+    // Its own: what other scenes left there would be given back in between, and count.
+    let mut renderer = new_renderer(&RenderConfig::default());
     renderer.watch_allocator(true);
     let settings = Settings {
         meshes: vec!["sphere".to_owned()],
