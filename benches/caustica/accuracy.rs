@@ -20,6 +20,7 @@ pub(crate) fn estimates(renderer: &mut Renderer, effort: Effort) -> Result<Table
         &["scene", "cells", "plain", "estimating", "ratio"],
     );
     let cases = [
+        ("sine_pool", 64),
         ("sine_pool", 128),
         ("sine_pool", 256),
         ("sine_pool", 512),

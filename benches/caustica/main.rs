@@ -3,14 +3,15 @@
 //! `cargo bench --bench caustica -- --quick` is the short form. Every figure is the median of several warm runs with the
 //! smallest and the largest beside it, since other work on the machine shows first in the largest.
 //!
-//! `frames` measures rendering, `instances` many objects, `savings` what is left out or kept, `accuracy` what a frame's estimate of its error costs, `files` encoding,
-//! `service` HTTP; `spread` sums up runs, `memory` asks the system, `report` writes the table.
+//! `frames` measures rendering, `instances` many objects, `savings` what is left out or kept, `accuracy` what a frame's estimate of its error costs, `pieces`
+//! how long dispatches are cut, `files` encoding, `service` HTTP; `spread` sums up runs, `memory` asks the system, `report` writes the table.
 
 mod accuracy;
 mod files;
 mod frames;
 mod instances;
 mod memory;
+mod pieces;
 mod report;
 mod savings;
 mod service;
@@ -54,7 +55,14 @@ const QUICK: Effort = Effort {
 };
 
 /// What is measured, unless some of these are named.
-const ROOMS: [&str; 5] = ["frames", "instances", "savings", "estimates", "service"];
+const ROOMS: [&str; 6] = [
+    "frames",
+    "instances",
+    "savings",
+    "estimates",
+    "pieces",
+    "service",
+];
 
 fn main() -> ExitCode {
     let mut quick = false;
@@ -100,6 +108,18 @@ fn run(effort: Effort, quick: bool, rooms: &[&str]) -> Result<(), Box<dyn Error>
     report.fact("form", if quick { "quick" } else { "full" });
 
     drop(renderer);
+    // What was measured before something failed is worth having.
+    let measured = measure(&mut report, effort, rooms);
+    report.fact("took", &format!("{:.0} s", started.elapsed().as_secs_f64()));
+    println!("{}", report.markdown());
+    for path in report.write("out")? {
+        eprintln!("{}", path.display());
+    }
+    measured
+}
+
+/// Puts the tables of `rooms` into the report.
+fn measure(report: &mut Report, effort: Effort, rooms: &[&str]) -> Result<(), Box<dyn Error>> {
     let mut stages = Vec::new();
     // A renderer of its own for each scene, so that no memory of the one counts for the other.
     let new_renderer = || Renderer::new(&RenderConfig::default());
@@ -120,6 +140,9 @@ fn run(effort: Effort, quick: bool, rooms: &[&str]) -> Result<(), Box<dyn Error>
         let table = accuracy::estimates(&mut new_renderer()?, effort)?;
         report.tables.push(table);
     }
+    if rooms.contains(&"pieces") {
+        report.tables.push(pieces::pieces(effort)?);
+    }
     if rooms.contains(&"service") {
         let service = service::requests(effort)?;
         report.tables.push(service.table);
@@ -127,12 +150,6 @@ fn run(effort: Effort, quick: bool, rooms: &[&str]) -> Result<(), Box<dyn Error>
     }
     if !stages.is_empty() {
         report.tables.push(memory::table(&stages));
-    }
-
-    report.fact("took", &format!("{:.0} s", started.elapsed().as_secs_f64()));
-    println!("{}", report.markdown());
-    for path in report.write("out")? {
-        eprintln!("{}", path.display());
     }
     Ok(())
 }

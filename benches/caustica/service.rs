@@ -58,19 +58,11 @@ pub(crate) fn requests(effort: Effort) -> Result<Service, Box<dyn Error>> {
     begin_stage();
     let runtime = Runtime::new()?;
     let running = Running::start(&runtime)?;
-    for connections in [1, 8] {
-        eprintln!("service, {connections} connections …");
-        let load = running.load(&scenes, connections, effort.service_row)?;
-        table.rows.push(vec![
-            Cell::count(connections),
-            Cell::count(load.times.runs()),
-            Cell::figure(load.times.runs() as f64 / load.took.as_secs_f64()),
-            Cell::figure(load.times.median()),
-            Cell::figure(load.times.percentile(95.0)),
-            Cell::figure(load.times.max()),
-        ]);
-    }
-    runtime.block_on(running.stop())?;
+    let rows = running.rows(&scenes, effort);
+    // Whatever came of it: a process that ends beside a live GPU thread tears the driver down under that thread.
+    let stopped = runtime.block_on(running.stop());
+    table.rows = rows?;
+    stopped?;
     Ok(Service {
         table,
         memory: Stage {
@@ -131,17 +123,37 @@ impl Running {
         let stopped = stop.clone().cancelled_owned();
         let served = runtime.spawn(serve_on(listener, state, Duration::ZERO, stopped));
         let mut status = queue.watch();
-        let settled = status.wait_for(|status| status.state != GpuState::Initializing);
-        let state = runtime.block_on(settled)?.state.clone();
-        if state != GpuState::Ready {
-            return Err(format!("the service is not ready: {state:?}").into());
-        }
-        Ok(Self {
+        let running = Self {
             address,
             queue,
             stop,
             served,
-        })
+        };
+        let settled = status.wait_for(|status| status.state != GpuState::Initializing);
+        let state = runtime.block_on(settled)?.state.clone();
+        if state != GpuState::Ready {
+            runtime.block_on(running.stop())?;
+            return Err(format!("the service is not ready: {state:?}").into());
+        }
+        Ok(running)
+    }
+
+    /// A row for one connection and one for eight.
+    fn rows(&self, scenes: &Scenes, effort: Effort) -> io::Result<Vec<Vec<Cell>>> {
+        let mut rows = Vec::new();
+        for connections in [1, 8] {
+            eprintln!("service, {connections} connections …");
+            let load = self.load(scenes, connections, effort.service_row)?;
+            rows.push(vec![
+                Cell::count(connections),
+                Cell::count(load.times.runs()),
+                Cell::figure(load.times.runs() as f64 / load.took.as_secs_f64()),
+                Cell::figure(load.times.median()),
+                Cell::figure(load.times.percentile(95.0)),
+                Cell::figure(load.times.max()),
+            ]);
+        }
+        Ok(rows)
     }
 
     /// Keeps `connections` busy for `row`.

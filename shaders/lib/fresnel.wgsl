@@ -22,5 +22,6 @@ fn fresnel_transmittance(cos_i: f32, eta: f32) -> f32 {
     let eta_cos_t = sqrt(square);
     let s_sum = cos_i + eta_cos_t;
     let p_sum = eta * cos_i + eta_cos_t / eta;
-    return 2.0 * cos_i * eta_cos_t * (1.0 / (s_sum * s_sum) + 1.0 / (p_sum * p_sum));
+    // Not cos_i · eta_cos_t first: at grazing incidence that product is subnormal, and GPUs take it for zero.
+    return 2.0 * cos_i * (eta_cos_t / (s_sum * s_sum) + eta_cos_t / (p_sum * p_sum));
 }
