@@ -62,6 +62,9 @@ pub(crate) fn pieces(effort: Effort) -> Result<Table, Box<dyn Error>> {
         eprintln!("pieces, {name}, {what} …");
         let scene = scene(&format!("scenes/{name}.json"), changes)?;
         let mut renderer = Renderer::new(&RenderConfig::default())?;
+        // The first frame builds what is kept between frames; its pieces wait for kernels as well.
+        renderer.render(&scene, &CancellationToken::new())?;
+        renderer.forget_pieces();
         let (counts, frame) = repeat(effort, || {
             let before = renderer.pieces().0;
             renderer.render(&scene, &CancellationToken::new())?;

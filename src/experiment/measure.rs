@@ -15,8 +15,10 @@ use crate::stats::Stats;
 
 /// Passes whose time is a way's own.
 const OWN_PASSES: [&str; 3] = ["depth_profile", "planes", "volumetric"];
+/// Slices, uniform planes, smart planes.
+const WAYS_BY_PLANES: usize = 3;
 /// Water cells that placement by hits is measured with.
-const HIT_CELLS: [u32; 4] = [32, 64, 128, 256];
+const HIT_CELLS: [u32; 8] = [24, 32, 48, 64, 96, 128, 192, 256];
 
 /// What is measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,7 +76,8 @@ pub fn measure(
     find_truth: &mut FindTruth<'_>,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Result<Experiment, ExperimentError> {
-    let each = settings.planes.len() + HIT_CELLS.len();
+    let each = (WAYS_BY_PLANES * settings.planes.len() + HIT_CELLS.len())
+        * (settings.runs.max(1) as usize + 1);
     let total = settings.meshes.len() * each;
     let mut experiment = Experiment {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -86,36 +89,49 @@ pub fn measure(
         ..Experiment::default()
     };
     for (index, name) in settings.meshes.iter().enumerate() {
+        let done = index * each;
         let base = scene(name, settings.water_cells, settings.texels)?;
-        progress(index * each, total, &format!("{name}: the float64 truth"));
+        progress(done, total, &format!("{name}: the float64 truth"));
         let truth = find_truth(&base)?;
         let truth = truth.as_ref();
+        let by_planes = settings.planes.iter().flat_map(|&planes| {
+            [
+                Way::Volumetric(planes),
+                Way::Uniform(planes),
+                Way::Smart(planes),
+            ]
+        });
+        let mut scenes: Vec<ResolvedScene> = by_planes.map(|way| way.of(&base)).collect();
+        scenes.extend(HIT_CELLS.map(|water_cells| {
+            let mut hit = Way::Hit.of(&base);
+            hit.scene.quality.water_cells = water_cells;
+            hit
+        }));
+        let measured = timed(&scenes, settings.runs, render, &mut |rendered| {
+            progress(
+                done + rendered,
+                total,
+                &format!(
+                    "{name}: frame {} of {each}, all settings in turn",
+                    rendered + 1
+                ),
+            );
+        })?;
+        let (by_planes, hits) = measured.split_at(WAYS_BY_PLANES * settings.planes.len());
         let mut result = MeshResult {
             name: name.clone(),
             triangles: base.meshes[0].triangles.len() as u64,
             truth_error: truth.map(|t| t.relative_error),
             ..MeshResult::default()
         };
-        for (done, &planes) in settings.planes.iter().enumerate() {
-            progress(
-                index * each + done,
-                total,
-                &format!("{name}: {planes} planes"),
-            );
-            result
-                .planes
-                .push(plane_point(&base, planes, settings.runs, truth, render)?);
+        for (&planes, ways) in settings
+            .planes
+            .iter()
+            .zip(by_planes.chunks_exact(WAYS_BY_PLANES))
+        {
+            result.planes.push(plane_point(&base, planes, ways, truth)?);
         }
-        for (done, &water_cells) in HIT_CELLS.iter().enumerate() {
-            let done = settings.planes.len() + done;
-            progress(
-                index * each + done,
-                total,
-                &format!("{name}: hits of {water_cells} cells"),
-            );
-            let mut hit = Way::Hit.of(&base);
-            hit.scene.quality.water_cells = water_cells;
-            let [way] = timed(&[hit], settings.runs, render)?;
+        for (water_cells, way) in HIT_CELLS.into_iter().zip(hits) {
             experiment.adapter = way.frame.stats.adapter.clone();
             let figures = way.figures(truth)?;
             result.hits.push(HitPoint {
@@ -128,24 +144,24 @@ pub fn measure(
     Ok(experiment)
 }
 
+/// The figures of a number of planes, from its slices, uniform and smart planes.
 fn plane_point(
     base: &ResolvedScene,
     planes: u32,
-    runs: u32,
+    ways: &[Measured],
     truth: Option<&Truth>,
-    render: &mut Render<'_>,
 ) -> Result<PlanePoint, ExperimentError> {
-    let ways = [
-        Way::Volumetric(planes),
-        Way::Uniform(planes),
-        Way::Smart(planes),
-    ];
-    let [volumetric, uniform, smart] = timed(&ways.map(|way| way.of(base)), runs, render)?;
+    let [volumetric, uniform, smart] = ways else {
+        return Err(ExperimentError::Scene(format!(
+            "{} ways instead of {WAYS_BY_PLANES}",
+            ways.len()
+        )));
+    };
     let white_w_m2 = std::f64::consts::PI
         * SceneFacts::of(base)
             .map_err(|error| refused(&error))?
             .white_radiance;
-    let pictures = [&volumetric, &uniform, &smart].map(Measured::image);
+    let pictures = [volumetric, uniform, smart].map(Measured::image);
     let compared: Vec<bool> = (0..pictures[1].rgb.len())
         .map(|at| pictures.iter().any(|picture| picture.rgb[at] != [0.0; 3]))
         .collect();
@@ -191,15 +207,20 @@ struct Measured {
     runs: Vec<Stats>,
 }
 
-/// Renders each scene once to warm up, then all in turns.
-fn timed<const N: usize>(
-    scenes: &[ResolvedScene; N],
+/// Renders each scene once to warm up, then all in turns, so that a machine's good and bad moments come to all; `progress` hears how
+/// many frames are done.
+fn timed(
+    scenes: &[ResolvedScene],
     runs: u32,
     render: &mut Render<'_>,
-) -> Result<[Measured; N], ExperimentError> {
-    let mut all = Vec::with_capacity(N);
+    progress: &mut dyn FnMut(usize),
+) -> Result<Vec<Measured>, ExperimentError> {
+    let mut all = Vec::with_capacity(scenes.len());
+    let mut rendered = 0;
     for scene in scenes {
+        progress(rendered);
         let frame = render(scene)?;
+        rendered += 1;
         all.push(Measured {
             frame,
             runs: Vec::new(),
@@ -207,11 +228,12 @@ fn timed<const N: usize>(
     }
     for _ in 0..runs.max(1) {
         for (scene, measured) in scenes.iter().zip(&mut all) {
+            progress(rendered);
             measured.runs.push(render(scene)?.stats);
+            rendered += 1;
         }
     }
-    all.try_into()
-        .map_err(|_| ExperimentError::Scene("no scenes".to_owned()))
+    Ok(all)
 }
 
 impl Measured {

@@ -362,7 +362,13 @@ impl Renderer {
         self.cutting.most_groups = most_groups;
     }
 
-    /// Pieces that dispatches were cut into since the start, and the time of the longest, ms.
+    /// Counts pieces from here on.
+    pub fn forget_pieces(&mut self) {
+        self.cutting.forget();
+    }
+
+    /// Pieces that dispatches were cut into since the start or [`forget_pieces`](Self::forget_pieces), and the time of the longest,
+    /// ms.
     pub fn pieces(&self) -> (u64, f64) {
         (self.cutting.pieces, self.cutting.longest_ms)
     }

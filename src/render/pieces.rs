@@ -13,7 +13,7 @@ use crate::passes::slot::Slot;
 
 /// Workgroups that run in one go, and first piece of a larger dispatch: about what the largest GPUs hold at once.
 const FIRST_GROUPS: u64 = 4096;
-/// The same of a dispatch that empties a queue: there a workgroup may have millions of texels to itself.
+/// The same of a dispatch that empties a queue: there a workgroup may have all texels of the maps to itself.
 const FIRST_QUEUE_GROUPS: u64 = 256;
 /// Words of a queue or of the flux sums up to which queues are emptied in one go: how many workgroups that takes only the GPU
 /// knows, and asking costs a small frame more than it could save.
@@ -38,6 +38,10 @@ impl Cutting {
         self.cancel = cancel.clone();
         self.unaccounted_ms = 0.0;
     }
+
+    pub(super) fn forget(&mut self) {
+        (self.pieces, self.longest_ms) = (0, 0.0);
+    }
 }
 
 impl Renderer {
@@ -61,7 +65,9 @@ impl Renderer {
                 self.submit_now(encoder, pass)?;
                 let read: Vec<u32> = readback::read(&self.gpu, &buffers.indirect, 12)?;
                 let all = <[u32; 3]>::try_from(read.as_slice()).unwrap_or_default();
-                (all, FIRST_QUEUE_GROUPS)
+                // As much to do as the full number has on the largest maps that are emptied in one go.
+                let larger = words(Slot::Flux).div_ceil(SHORT_WORDS).max(1);
+                (all, (FIRST_QUEUE_GROUPS / larger).max(1))
             }
         };
         let first = asked.unwrap_or(first);
