@@ -217,6 +217,10 @@ fn timed(
 ) -> Result<Vec<Measured>, ExperimentError> {
     let mut all = Vec::with_capacity(scenes.len());
     let mut rendered = 0;
+    // Takes what the shape before has left.
+    if let Some(first) = scenes.first() {
+        render(first)?;
+    }
     for scene in scenes {
         progress(rendered);
         let frame = render(scene)?;
@@ -261,18 +265,15 @@ impl Measured {
             times.into_iter().sum()
         };
         let own_ms: Option<Vec<f64>> = self.runs.iter().map(own).collect();
-        let last = self
-            .runs
-            .last()
-            .map(|stats| stats.memory.clone())
-            .unwrap_or_default();
+        // Of the first round, where what comes before is alike: frames of many more cells leave buffers to their successors.
+        let memory = &self.frame.stats.memory;
         Ok(WayFigures {
             ms: SpreadMs::of(self.runs.iter().map(|stats| stats.time_ms.gpu).collect())
                 .unwrap_or_default(),
             own_ms: own_ms.and_then(SpreadMs::of).map(|spread| spread.median),
-            planned_bytes: last.planned_peak_bytes,
-            peak_bytes: last.peak_bytes,
-            allocated_bytes: last.allocated_bytes,
+            planned_bytes: memory.planned_peak_bytes,
+            peak_bytes: memory.peak_bytes,
+            allocated_bytes: memory.allocated_bytes,
             error: truth.map(|truth| self.error(truth)).transpose()?,
         })
     }
