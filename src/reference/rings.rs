@@ -1,15 +1,22 @@
 //! Places around the foot of a point light, as many where it shines brightest as its light deserves.
 //!
 //! A lamp at height h lights a plane with I h/(ρ² + h²)^(3/2) at distance ρ from its foot: of one a millimetre above the water half the
-//! light goes through a spot of three millimetres, which an even lattice hardly meets. Here a lattice over (w, φ) with w = ½ ln(1 + ρ²/h²)
-//! has places of density 1/(ρ² + h²): near the foot as dense as the light, and from there on the same number in every ring of
-//! twice the width, which is what the flanks of waves need that the light only grazes. Each place stands for (ρ² + h²) dw dφ of the plane.
+//! light goes through a spot of two millimetres, which an even lattice hardly meets. Here a lattice lies over (w, φ) with
+//! w = q + κ (1 − e^(−q)), q = ½ ln(1 + ρ²/h²). The second term spreads places as a level plane is lit, the first gives every ring of
+//! twice the width the same number, which is what the flanks of waves need that the light only grazes. Each place stands for
+//! (ρ² + h²)/(1 + κ e^(−q)) dw dφ of the plane.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
 
 use super::window::LightWindow;
+
+/// κ: how many times as many places as by the rings there are where a level plane is lit. Of a light a millimetre above the water, with
+/// metres of it to look at, about half of them.
+const CORE: f64 = 8.0;
+/// Steps of Newton's method, far more than it takes.
+const MOST_STEPS: u32 = 64;
 
 /// The places, on any plane; coordinates (s, t) are (w, φ) in units of one's choice.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +43,8 @@ impl Rings {
 
     /// Area per unit of w and φ at distance `rho_m` from the foot, m².
     pub(super) fn area_m2(&self, rho_m: f64) -> f64 {
-        rho_m * rho_m + self.height_m * self.height_m
+        let square_m2 = rho_m * rho_m + self.height_m * self.height_m;
+        square_m2 / (1.0 + CORE * self.height_m / square_m2.sqrt())
     }
 
     /// The place at `st`, m, and the area that a unit of (s, t) is there, m².
@@ -47,8 +55,23 @@ impl Rings {
         (place_m, self.area_m2(rho_m) * self.unit.element_product())
     }
 
+    fn w(&self, rho_m: f64) -> f64 {
+        let q = 0.5 * (rho_m / self.height_m).powi(2).ln_1p();
+        q - CORE * (-q).exp_m1()
+    }
+
+    /// The distance from the foot at `w`, m: w(q) is concave, so that Newton's method runs up to q from below.
     fn distance_m(&self, w: f64) -> f64 {
-        self.height_m * (2.0 * w).exp_m1().max(0.0).sqrt()
+        let mut q = (w / (1.0 + CORE)).max(w - CORE).max(0.0);
+        for _ in 0..MOST_STEPS {
+            let below = (-q).exp_m1();
+            let step = (w - q + CORE * below) / (1.0 + CORE * (1.0 + below));
+            q += step;
+            if step <= 1e-16 * q {
+                break;
+            }
+        }
+        self.height_m * (2.0 * q).exp_m1().max(0.0).sqrt()
     }
 
     /// The smallest rectangle of (s, t) that holds `window`; empty when that is.
@@ -59,7 +82,6 @@ impl Rings {
         }
         let nearest_m = low.max(-high).max(DVec2::ZERO).length();
         let farthest_m = low.abs().max(high.abs()).length();
-        let w = |rho_m: f64| 0.5 * (rho_m / self.height_m).powi(2).ln_1p();
         let (from, to) = if nearest_m > 0.0 {
             let middle = (low + high) * 0.5;
             let turn = [
@@ -78,8 +100,8 @@ impl Rings {
             (-PI, PI)
         };
         LightWindow {
-            min_m: DVec2::new(w(nearest_m), from) / self.unit,
-            max_m: DVec2::new(w(farthest_m), to.min(from + TAU)) / self.unit,
+            min_m: DVec2::new(self.w(nearest_m), from) / self.unit,
+            max_m: DVec2::new(self.w(farthest_m), to.min(from + TAU)) / self.unit,
         }
     }
 
