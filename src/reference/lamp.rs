@@ -1,14 +1,16 @@
 //! One point light, one lattice, all rays: each has a direction and a weight of its own.
 //!
 //! Above the water the lattice lies on the water and a ray stands for I cos θ dA / r² of the light; under it the lattice lies on the
-//! floor's plane, so that every ray is on its way to the map and only meshes can stop it.
+//! floor's plane, so that every ray is on its way to the map and only meshes can stop it. Either way it lies in rings around the
+//! foot of the light, where that is brightest: an even lattice would step over all the light of one that almost touches the plane.
 
 use glam::{DVec2, DVec3};
 
 use super::lattice::{Lattice, Row};
+use super::rings::Rings;
 use super::tally::Tally;
 use super::trace::Ground;
-use super::window::{LightWindow, Target, lamp_window};
+use super::window::{LampDrift, LightWindow, Target};
 use crate::physics::fresnel::{fresnel_reflectance, fresnel_transmittance};
 use crate::physics::refraction::refract_direction;
 use crate::waves::{WaterSurface, normal};
@@ -42,10 +44,11 @@ impl<'a> Lamp<'a> {
                 max_m: map.map_or(DVec2::ZERO, |m| DVec2::new(m.max_m.x, m.max_m.z)),
             };
         }
-        lamp_window(self.surface, self.position_m, self.ior, targets)
+        let crest_m = self.surface.max_height_m();
+        LampDrift::of(self.surface, self.ior).window(crest_m, self.position_m, targets)
     }
 
-    /// Counts every ray of `lattice` in `window`, per W/sr of the light.
+    /// Counts every ray of `lattice` in `window`, per W/sr of the light; the lattice's cell is a unit of [`Self::rings`].
     pub(super) fn trace<const K: usize>(
         &self,
         ground: &Ground<'_, K>,
@@ -54,25 +57,52 @@ impl<'a> Lamp<'a> {
         counted: &(dyn Fn(u64) + Sync),
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Tally<K> {
+        let Some((rings, part)) = self.rings(ground.map.depth_m, window) else {
+            return Tally::new(ground.map, ground.occluders.bounds.len());
+        };
         let count_row = |row: Row, tally: &mut Tally<K>| {
             let mut stack = Vec::new();
             for i in 0..row.count {
-                let place_m = row.start_m + lattice.step_m() * i as f64;
+                let (place_m, m2) = rings.place(row.start_m + lattice.step_m() * i as f64);
+                // The rings reach beyond the corners of the window.
+                if !window.contains(place_m) {
+                    continue;
+                }
                 if self.submerged {
-                    self.shine(ground, place_m, &mut stack, tally);
+                    self.shine(ground, (place_m, m2), &mut stack, tally);
                 } else {
-                    self.refract(ground, place_m, &mut stack, tally);
+                    self.refract(ground, (place_m, m2), &mut stack, tally);
                 }
             }
         };
-        ground.count_rows(lattice, window, counted, cancelled, &count_row)
+        ground.count_rows(lattice, &part, counted, cancelled, &count_row)
     }
 
-    /// A ray straight to a place of the floor.
+    /// Rings that cover `window` of the water, or of the floor at `depth_m`, with one unit of (s, t), and where that is; `None` where
+    /// there is nothing to cover.
+    fn rings(&self, depth_m: f64, window: &LightWindow) -> Option<(Rings, LightWindow)> {
+        let foot_m = DVec2::new(self.position_m.x, self.position_m.z);
+        let plane_m = if self.submerged {
+            -depth_m
+        } else {
+            self.surface.at(foot_m.x, foot_m.y).height_m
+        };
+        let height_m = self.position_m.y - plane_m;
+        let rings = Rings::around(foot_m, height_m);
+        let part = rings.around_window(window);
+        let size = part.max_m - part.min_m;
+        if height_m <= 0.0 || !size.is_finite() || size.min_element() <= 0.0 {
+            return None;
+        }
+        let rings = rings.in_units_of(size);
+        Some((rings, rings.around_window(window)))
+    }
+
+    /// A ray straight to a place of the floor that stands for `m2` of it.
     fn shine<const K: usize>(
         &self,
         ground: &Ground<'_, K>,
-        place_m: DVec2,
+        (place_m, m2): (DVec2, f64),
         stack: &mut Vec<usize>,
         tally: &mut Tally<K>,
     ) {
@@ -82,16 +112,16 @@ impl<'a> Lamp<'a> {
         if down_m <= 0.0 || path_m == 0.0 {
             return; // the floor does not face it
         }
-        let flux = down_m / path_m.powi(3);
+        let flux = m2 * down_m / path_m.powi(3);
         tally.emitted += flux;
         ground.land(flux, self.position_m, to_m, path_m, stack, tally);
     }
 
-    /// A ray through a place of the water.
+    /// A ray through a place of the water that stands for `m2` of it.
     fn refract<const K: usize>(
         &self,
         ground: &Ground<'_, K>,
-        place_m: DVec2,
+        (place_m, m2): (DVec2, f64),
         stack: &mut Vec<usize>,
         tally: &mut Tally<K>,
     ) {
@@ -106,7 +136,7 @@ impl<'a> Lamp<'a> {
         if cos_i.is_nan() || cos_i <= 0.0 {
             return;
         }
-        let flux = cos_i / (n.y * distance2);
+        let flux = m2 * cos_i / (n.y * distance2);
         tally.emitted += flux;
         tally.reflected += flux * fresnel_reflectance(cos_i, self.ior);
         let entered = flux * fresnel_transmittance(cos_i, self.ior);

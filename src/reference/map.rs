@@ -196,11 +196,13 @@ impl<'a, const K: usize> Counter<'a, K> {
 
     /// Texels' worth of water in all windows.
     fn texels_of_water(&self) -> f64 {
+        let windows = self.suns.iter().map(|sun| &sun.window);
+        windows.map(|window| self.texels_in(window)).sum()
+    }
+
+    fn texels_in(&self, window: &LightWindow) -> f64 {
         let texel_m2 = self.map.texel_m.x * self.map.texel_m.y;
-        self.suns
-            .iter()
-            .map(|sun| (sun.window.max_m - sun.window.min_m).element_product() / texel_m2)
-            .sum()
+        (window.max_m - window.min_m).element_product() / texel_m2
     }
 
     fn run(
@@ -267,8 +269,14 @@ impl<'a, const K: usize> Counter<'a, K> {
             for (half, irradiance) in halves.iter_mut().enumerate() {
                 let key = (index * 2 + half) as u64 * 2;
                 let shift = DVec2::new(uniform(key), uniform(key + 1));
-                let lattice = Lattice::new(points_per_texel, self.map.texel_m, shift, half == 1);
-                points_per_texel = SECOND_HALF * lattice.points_per_texel(self.map.texel_m);
+                // All rays of a point light lie in one cell, see `lamp`.
+                let (cell_m, texels) = match sun.source {
+                    CountedSource::Sun(_) => (self.map.texel_m, 1.0),
+                    CountedSource::Lamp(_) => (DVec2::ONE, self.texels_in(&sun.window)),
+                };
+                let points = points_per_texel * texels;
+                let lattice = Lattice::new(points, cell_m, shift, half == 1);
+                points_per_texel = SECOND_HALF * lattice.points_per_texel(cell_m) / texels;
                 let tally = match sun.source {
                     CountedSource::Sun(to_light) => Beam {
                         ground,

@@ -8,16 +8,19 @@
 //! - `checks`: figures that can be counted with, and the lights that count;
 //! - `place`: a scene in local coordinates, and where a ray meets the water;
 //! - `window`: the piece of water that can light a map;
-//! - `lattice`: where the rays start; `slanted`: the same in cells that fit a tilted receiver;
+//! - `lattice`: where the rays start; `slanted`: the same in cells that fit a tilted receiver; `rings`: the same around the foot of a
+//!   point light; `strata`: the one or the other;
+//! - `light`: a light in its place, and its ray through a place of the water;
 //! - `refract`: many rays at once through the surface;
 //! - `occluders`: the triangles a ray meets;
 //! - floor maps: `floor`, the texels rays are counted in; `tally`, what a batch of rays brought, term by term; `trace`, one sun,
 //!   one lattice, all rays; `lamp`, the same for a point light; `map`, rounds of ever finer lattices until the map is good enough;
-//! - maps on objects: `object_map`;
-//! - views: `camera`, the points that pixels show; `patch`, the light on one of them, searched from there; `view`, all of them;
+//! - maps on objects: `object_rays`, the rays of one light that may strike an object; `object_map`, where they do;
+//! - views: `camera`, the points that pixels show; `patch`, the light through the water on one of them, searched from there; `shine`,
+//!   that of a point light under water, straight; `view`, all of them;
 //! - `closed_form` and `paraboloid`: scenes with a formula instead of rays.
 //!
-//! Model: suns are points at infinity; point lights are counted in floor maps only; waves do not shade each other and light that a surface reflects is not followed;
+//! Model: suns are points at infinity; what a point light under water sends up to the surface ends there; waves do not shade each other and light that a surface reflects is not followed;
 //! objects stop light under the water only, not on its way to the water; light that is refracted upwards is lost.
 
 mod camera;
@@ -27,15 +30,20 @@ mod disk;
 mod floor;
 mod lamp;
 mod lattice;
+mod light;
 mod map;
 mod object_map;
+mod object_rays;
 mod occluders;
 mod paraboloid;
 mod patch;
 mod place;
 mod refract;
+mod rings;
 mod settings;
+mod shine;
 mod slanted;
+mod strata;
 mod tally;
 mod trace;
 mod truth;

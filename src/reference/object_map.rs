@@ -1,6 +1,6 @@
 //! The light on an object, in the texels of the map that its level map spans.
 //!
-//! Plain rays go down all over the water that can light the object. Those that strike the surface that is asked for, the first along
+//! Plain rays go down all over the water that can light the object, or straight from a point light under water. Those that strike the surface that is asked for, the first along
 //! the map's axis or one behind it, are counted in the texel they strike; the cells of the lattice are the texels' shadows on the
 //! water, so flat water gives every texel of the first surface the same count.
 
@@ -9,13 +9,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
-use super::lattice::Lattice;
+use super::lattice::Row;
+use super::light::PlacedLight;
 use super::map::{MOST_GROWTH, ORDER, half_difference, mean, share};
-use super::place::{Place, PlacedSun};
-use super::refract::{BLOCK, Block, RowRefractor};
-use super::slanted::{Cells, halves, rows};
+use super::object_rays::{ObjectRays, Ray, Volley};
+use super::place::Place;
+use super::slanted::{halves, rows};
 use super::tally::add_to;
-use super::window::{LightWindow, window_of};
 use super::{ReferenceError, Truth, TruthKind, TruthSettings};
 use crate::physics::attenuation::transmission;
 use crate::scene::ResolvedScene;
@@ -28,7 +28,7 @@ const BANDS: usize = 8;
 /// Nearer along the axis than this share of the object's size a surface does not hide another: rounding.
 const SAME_SURFACE: f64 = 1e-7;
 
-/// Landed and stopped light per texel: (r, g, b) and the same again, m² times W/m² of the sun.
+/// Landed and stopped light per texel: (r, g, b) and the same again, W.
 type Texels = Vec<[f64; 6]>;
 
 /// The truth about the map on object `index`.
@@ -48,17 +48,18 @@ pub(super) fn object_map(
         });
     }
     let side = resolved.scene.quality.level_map_texels;
-    let (Some(sun), true) = (place.suns.first(), place.facts.objects[object].wet) else {
+    let facts = &place.facts.objects[object];
+    let light = place.lights.first().filter(|_| facts.wet);
+    let axis = light.and_then(|light| {
+        let middle_m = facts.wet_middle();
+        light.source.direction_at(middle_m, place.facts.ior)
+    });
+    let (Some(light), Some(axis)) = (light, axis) else {
         progress(1.0);
         return Ok(dark(side));
     };
-    let level_box = LevelBox::new(
-        &place.facts.objects[object],
-        &resolved.meshes[object],
-        sun.flat,
-        1,
-    );
-    let counter = Counter::new(&place, sun, &level_box, (object, place.facts.map_layer));
+    let level_box = LevelBox::new(facts, &resolved.meshes[object], axis, 1);
+    let counter = Counter::new(&place, light, &level_box, (object, place.facts.map_layer));
     let cosines = counter.cosines(side);
     let (halves, rays) = counter.rounds(&cosines, settings, progress, cancelled)?;
     let [a, b] = &halves;
@@ -73,7 +74,7 @@ pub(super) fn object_map(
     })
 }
 
-/// A map that no light reaches; without a sun there is no axis to look along, and nothing to compare.
+/// A map that no light reaches; without a light there is no axis to look along, and nothing to compare.
 fn dark(side: u32) -> Truth {
     let texels = side as usize * side as usize;
     Truth {
@@ -105,7 +106,7 @@ fn shadow(a: &Texels, b: &Texels, cosines: &[Option<f64>]) -> Vec<f64> {
 
 struct Counter<'a> {
     place: &'a Place,
-    sun: &'a PlacedSun,
+    light: &'a PlacedLight,
     level_box: &'a LevelBox,
     object: usize,
     /// How many of the object's surfaces lie before the one that is asked for, along the axis.
@@ -114,25 +115,20 @@ struct Counter<'a> {
     corner_m: DVec3,
     /// From a texel to the next along u and v, m.
     edges_m: [DVec3; 2],
-    cells: Cells,
-    /// Rectangle of (s, t) that holds all water whose light can reach the object.
-    part: LightWindow,
-    /// A plane below the object, where rays end that miss it, m below the water at rest.
-    end_m: f64,
+    /// What may strike it; `None`: nothing.
+    rays: Option<ObjectRays<'a>>,
     same_surface_m: f64,
 }
 
 impl<'a> Counter<'a> {
     fn new(
         place: &'a Place,
-        sun: &'a PlacedSun,
+        light: &'a PlacedLight,
         level_box: &'a LevelBox,
         (object, layer): (usize, u32),
     ) -> Self {
-        let facts = &place.facts;
         let bounds = place.occluders.bounds[object];
         let size_m = (bounds.max_m - bounds.min_m).length();
-        let window = window_of(&facts.surface, sun.to_light, facts.ior, &[bounds]);
         // A texel's edges across the axis: the columns of the inverse of the map's rows.
         let rows = level_box.map_from_local.map(DVec4::truncate);
         let [u_m, v_m] = [
@@ -146,18 +142,15 @@ impl<'a> Counter<'a> {
         );
         let along_m = level_box.axis / level_box.s_per_m;
         let corner_m = u_m * corner.x + v_m * corner.y + along_m * corner.z;
-        let cells = Cells::of(corner_m, u_m, v_m, level_box.axis);
         Self {
             place,
-            sun,
+            light,
             level_box,
             object,
             layer,
             corner_m,
             edges_m: [u_m, v_m],
-            part: cells.around(&window),
-            cells,
-            end_m: -(bounds.min_m.y - 1e-3 * size_m),
+            rays: ObjectRays::new(place, light, bounds, (corner_m, [u_m, v_m])),
             same_surface_m: SAME_SURFACE * size_m,
         }
     }
@@ -205,10 +198,10 @@ impl<'a> Counter<'a> {
         progress: &(dyn Fn(f64) + Sync),
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<([Texels; 2], u64), ReferenceError> {
-        let size = self.part.max_m - self.part.min_m;
-        if !size.is_finite() {
+        let Some(rays_of_light) = &self.rays else {
             return Ok(([(); 2].map(|()| vec![[0.0; 6]; cosines.len()]), 0));
-        }
+        };
+        let size = rays_of_light.part.max_m - rays_of_light.part.min_m;
         let most = (settings.max_rays as f64 / (2.0 * size.element_product())).max(1e-6);
         let target = settings.target_error.unwrap_or(0.0);
         let mut points = match settings.target_error {
@@ -221,7 +214,11 @@ impl<'a> Counter<'a> {
             let counted = AtomicU64::new(0);
             let mut rays = 0;
             let both = halves(points, self.object as u64).map(|lattice| {
-                let texels = self.count(&lattice, cosines.len(), cancelled, &|more| {
+                let volley = rays_of_light.volley(lattice);
+                let all = rows(&lattice, &rays_of_light.part).collect::<Vec<_>>();
+                let per_point = lattice.area_per_point_m2();
+                let sent = (&volley, &all[..], per_point);
+                let texels = self.count(sent, cosines.len(), cancelled, &|more| {
                     let done = counted.fetch_add(more, Ordering::Relaxed) + more;
                     if !first || points >= most {
                         progress((done as f64 / planned).min(1.0));
@@ -245,47 +242,26 @@ impl<'a> Counter<'a> {
         }
     }
 
-    /// Sends every ray of `lattice`; m² of flux per unit irradiance become W when the sun's comes in.
+    /// Sends the rays of all rows, each of which stands for `per_point` units of (s, t).
     fn count(
         &self,
-        lattice: &Lattice,
+        (volley, all, per_point): (&Volley<'_>, &[Row], f64),
         texels: usize,
         cancelled: &(dyn Fn() -> bool + Sync),
         counted: &(dyn Fn(u64) + Sync),
     ) -> Texels {
-        let facts = &self.place.facts;
-        let step_m = self.cells.basis_m * lattice.step_m();
-        let refractor = RowRefractor::new(
-            &facts.surface,
-            step_m,
-            self.sun.to_light,
-            facts.ior,
-            self.end_m,
-        );
-        let all: Vec<_> = rows(lattice, &self.part).collect();
-        let water_m2 = self.cells.area_m2() * lattice.area_per_point_m2();
         let bands: Vec<Texels> = (0..BANDS)
             .into_par_iter()
             .map(|band| {
                 let mut sum = vec![[0.0; 6]; texels];
-                let mut block = Block::new();
                 let mut scratch = Scratch::default();
                 for row in &all[all.len() * band / BANDS..all.len() * (band + 1) / BANDS] {
                     if cancelled() {
                         break;
                     }
-                    let row_m = self.cells.water_m(row.start_m);
-                    let mut done = 0;
-                    while done < row.count {
-                        let start_m = row_m + step_m * done as f64;
-                        let count = (row.count - done).min(BLOCK as u64);
-                        refractor.send(start_m, &mut block);
-                        for i in 0..count as usize {
-                            let top_m = start_m + step_m * i as f64;
-                            self.book(&block, i, top_m, water_m2, &mut sum, &mut scratch);
-                        }
-                        done += count;
-                    }
+                    volley.send(*row, &mut |ray| {
+                        self.book(ray, per_point, &mut sum, &mut scratch);
+                    });
                     counted(row.count);
                 }
                 sum
@@ -300,22 +276,15 @@ impl<'a> Counter<'a> {
         total
     }
 
-    /// Books ray `i` of `block` where it crosses the surface that is asked for.
-    fn book(
-        &self,
-        block: &Block,
-        i: usize,
-        top_m: DVec2,
-        water_m2: f64,
-        sum: &mut Texels,
-        scratch: &mut Scratch,
-    ) {
-        if block.x_m[i].is_nan() || block.entered[i] <= 0.0 {
-            return;
-        }
+    /// Books a ray where it crosses the surface that is asked for.
+    fn book(&self, ray: &Ray, per_point: f64, sum: &mut Texels, scratch: &mut Scratch) {
         let occluders = &self.place.occluders;
-        let from_m = DVec3::new(top_m.x, block.height_m[i], top_m.y);
-        let to_m = DVec3::new(block.x_m[i], -self.end_m, block.z_m[i]);
+        let Ray {
+            from_m,
+            to_m,
+            path_m: whole_m,
+            flux,
+        } = *ray;
         let Scratch {
             stack,
             crossings,
@@ -341,20 +310,28 @@ impl<'a> Counter<'a> {
             return; // rounding: the map has a rim
         }
         let texel = at.y as usize * self.level_box.key.texels as usize + at.x as usize;
-        let path_m = block.path_m[i] * fraction;
+        if self.out_of_water(from_m, p_m) {
+            return;
+        }
+        let path_m = whole_m * fraction;
         // What the ray meets there is the surface itself; anything a little before it stands in the way.
-        let until = fraction - self.same_surface_m / block.path_m[i];
+        let until = fraction - self.same_surface_m / whole_m;
         let before_m = from_m.lerp(to_m, until.max(0.0));
         let stopped = until > 0.0
             && (self.behind_floor(from_m, before_m)
                 || occluders.blocks(from_m, before_m, None, 1.0, stack));
         let first_channel = if stopped { 3 } else { 0 };
         for c in 0..3 {
-            sum[texel][first_channel + c] += block.entered[i]
+            sum[texel][first_channel + c] += flux
                 * transmission(self.place.facts.extinction_per_m[c], path_m)
-                * water_m2
-                * self.sun.irradiance_w_m2[c];
+                * per_point
+                * self.light.power[c];
         }
+    }
+
+    /// Whether a ray that goes up has left the water before it is at `p_m`: what goes up from a light under water ends at the surface.
+    fn out_of_water(&self, from_m: DVec3, p_m: DVec3) -> bool {
+        p_m.y > from_m.y && self.place.over_water_m(p_m) > 0.0
     }
 
     /// Whether the way between two points goes through the floor.

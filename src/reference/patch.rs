@@ -1,21 +1,22 @@
-//! The sunlight through the water that falls on a small square, searched from the square.
+//! The light through the water that falls on a small square, searched from the square.
 //!
 //! The water that can light it is quartered over and over; a piece from which no ray can reach the square is left out. How far
-//! apart the rays of a piece can land follows from the steepest slope and the strongest curvature of the waves, so nothing is
-//! lost. In what remains plain rays are counted.
+//! apart the rays of a piece can land follows from the steepest slope and the strongest curvature of the waves, and of a point light
+//! from its distance, so nothing is lost. In what remains plain rays are counted.
 
 use std::f64::consts::SQRT_2;
 
 use glam::{DVec2, DVec3};
 
-use super::place::{Place, PlacedSun};
-use super::slanted::{Cells, halves, rows};
+use super::light::{PlacedLight, turn};
+use super::place::Place;
+use super::slanted::{halves, rows};
+use super::strata::Strata;
 use super::tally::add_to;
-use super::window::{LightWindow, Target, window_of};
+use super::window::{LightWindow, Target};
 use crate::physics::attenuation::transmission;
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::refraction::normal_from_slope;
-use crate::waves::SurfacePoint;
 
 /// A piece of water is not quartered any more once its rays land this close together, in half sides of the square …
 const CLOSE: f64 = 0.5;
@@ -27,38 +28,53 @@ const OWN_REACH: f64 = 2.0;
 /// A square that receives light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch {
-    center_m: DVec3,
-    normal: DVec3,
-    across: [DVec3; 2],
-    half_m: f64,
+    pub(super) center_m: DVec3,
+    pub(super) normal: DVec3,
+    /// Unit directions of its sides.
+    pub(super) across: [DVec3; 2],
+    pub(super) half_m: f64,
     object: Option<usize>,
 }
 
-/// Light on a square, W/m².
+/// Light on a square; W/m² once it is scaled.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Sunlight {
+pub(super) struct Landed {
     /// What arrives.
     pub(super) lit: [f64; 3],
     /// What would arrive, had no mesh stood in the way.
     pub(super) stopped: [f64; 3],
 }
 
-impl Sunlight {
+impl Landed {
     pub(super) fn add(&mut self, other: &Self) {
         add_to(&mut self.lit, &other.lit);
         add_to(&mut self.stopped, &other.stopped);
     }
-}
 
-/// A ray just under the water.
-struct Bent {
-    from_m: DVec3,
-    /// Unit direction.
-    direction: DVec3,
-    /// (n·l)/n_y: water facing the sun per horizontal area.
-    facing: f64,
-    /// Cosine of the incidence.
-    cos_i: f64,
+    /// Multiplies each channel.
+    pub(super) fn scale(&mut self, factor: [f64; 3]) {
+        for c in 0..3 {
+            self.lit[c] *= factor[c];
+            self.stopped[c] *= factor[c];
+        }
+    }
+
+    /// Adds a ray of flux `entered` that is on its way through `path_m` of water.
+    pub(super) fn book(&mut self, entered: f64, [r, g, b]: [f64; 3], path_m: f64, blocked: bool) {
+        let target = if blocked {
+            &mut self.stopped
+        } else {
+            &mut self.lit
+        };
+        if r == g && g == b {
+            let arrived = entered * transmission(r, path_m);
+            target.iter_mut().for_each(|sum| *sum += arrived);
+        } else {
+            for (sum, c) in target.iter_mut().zip([r, g, b]) {
+                *sum += entered * transmission(c, path_m);
+            }
+        }
+    }
 }
 
 /// What is known of all rays of a piece of water.
@@ -116,53 +132,80 @@ impl Patch {
         Reach::Within(reach_m)
     }
 
-    fn cells(&self, flat: DVec3) -> Cells {
-        let [u_m, v_m] = self.across.map(|edge| edge * (2.0 * self.half_m));
-        Cells::of(self.center_m - (u_m + v_m) * 0.5, u_m, v_m, flat)
+    /// A corner, and the sides from there.
+    fn sides_m(&self) -> (DVec3, [DVec3; 2]) {
+        let sides_m = self.across.map(|side| side * (2.0 * self.half_m));
+        (self.center_m - (sides_m[0] + sides_m[1]) * 0.5, sides_m)
+    }
+
+    /// Whether something stands between `from_m` and `to_m`, a point of the square.
+    pub(super) fn blocked(
+        &self,
+        place: &Place,
+        from_m: DVec3,
+        to_m: DVec3,
+        may_be_shaded: bool,
+        stack: &mut Vec<usize>,
+    ) -> bool {
+        if let Some(floor) = &place.facts.floor
+            && self.object.is_some()
+            && to_m.y < floor.y_m
+        {
+            let p = from_m.lerp(to_m, (floor.y_m - from_m.y) / (to_m.y - from_m.y));
+            let p = DVec2::new(p.x, p.z);
+            if p.cmpge(floor.rect.min).all() && p.cmple(floor.rect.max).all() {
+                return true;
+            }
+        }
+        let path_m = from_m.distance(to_m);
+        if !may_be_shaded || path_m <= 0.0 {
+            return false;
+        }
+        let own_until = 1.0 - OWN_REACH * 2.0 * self.half_m / path_m;
+        place
+            .occluders
+            .blocks(from_m, to_m, self.object, own_until, stack)
+    }
+
+    /// Whether a mesh may stand between the square and the box `others`.
+    pub(super) fn may_be_shaded(&self, place: &Place, others: Target) -> bool {
+        let own = self.bounds();
+        let (low, high) = (own.min_m.min(others.min_m), own.max_m.max(others.max_m));
+        let mut bounds = place.occluders.bounds.iter();
+        bounds.any(|b| b.min_m.cmple(high).all() && b.max_m.cmpge(low).all())
     }
 }
 
-/// The search for one sun's light on one square.
+/// The search for one light's way through the water to one square.
 pub(super) struct Search<'a> {
     place: &'a Place,
-    sun: &'a PlacedSun,
+    light: &'a PlacedLight,
     patch: &'a Patch,
-    cells: Cells,
-    /// Half diagonal of a cell that is a unit square of (s, t), m.
-    half_diagonal_m: f64,
+    strata: Strata,
     /// Whether a mesh may stand between the water and the square.
     may_be_shaded: bool,
     window: LightWindow,
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(place: &'a Place, sun: &'a PlacedSun, patch: &'a Patch) -> Self {
-        let facts = &place.facts;
+    /// `None` of light that comes through no water.
+    pub(super) fn new(place: &'a Place, light: &'a PlacedLight, patch: &'a Patch) -> Option<Self> {
         let bounds = patch.bounds();
-        let window = window_of(&facts.surface, sun.to_light, facts.ior, &[bounds]);
-        let cells = patch.cells(sun.flat);
-        let (a, b) = (cells.basis_m.x_axis, cells.basis_m.y_axis);
-        let crest_m = facts.surface.max_height_m();
-        let low = bounds
-            .min_m
-            .min(DVec3::new(window.min_m.x, bounds.min_m.y, window.min_m.y));
-        let high = bounds
-            .max_m
-            .max(DVec3::new(window.max_m.x, crest_m, window.max_m.y));
-        let may_be_shaded = place
-            .occluders
-            .bounds
-            .iter()
-            .any(|b| b.min_m.cmple(high).all() && b.max_m.cmpge(low).all());
-        Self {
+        let window = light.window(place, bounds);
+        let (corner_m, sides_m) = patch.sides_m();
+        let crest_m = place.facts.surface.max_height_m();
+        let water = Target {
+            min_m: DVec3::new(window.min_m.x, bounds.min_m.y, window.min_m.y),
+            max_m: DVec3::new(window.max_m.x, crest_m, window.max_m.y),
+        };
+        Some(Self {
             place,
-            sun,
+            light,
             patch,
-            half_diagonal_m: 0.5 * (a + b).length().max((a - b).length()),
-            cells,
-            may_be_shaded,
+            strata: Strata::of(place, light, corner_m, sides_m)?,
+            may_be_shaded: patch.may_be_shaded(place, water),
             window,
-        }
+        })
     }
 
     /// Two independent estimates from about `points` rays per square of evenly lit water each, and how many rays were counted.
@@ -171,32 +214,28 @@ impl<'a> Search<'a> {
         points: f64,
         key: u64,
         stack: &mut Vec<usize>,
-    ) -> ([Sunlight; 2], u64) {
+    ) -> ([Landed; 2], u64) {
+        // Above the crests, or out of the light's reach.
         if !self.window.min_m.is_finite() || !self.window.max_m.is_finite() {
-            return Default::default(); // above the crests
+            return Default::default();
         }
         let pieces = self.pieces(points);
         let mut rays = 0;
         let lattices = halves(points, key);
         let both = lattices.map(|lattice| {
-            let mut sum = Sunlight::default();
+            let mut sum = Landed::default();
             let step = lattice.step_m();
             for piece in &pieces {
                 for row in rows(&lattice, piece) {
                     rays += row.count;
                     for i in 0..row.count {
                         let st = row.start_m + step * i as f64;
-                        self.count(self.cells.water_m(st), &mut sum, stack);
+                        self.count(self.strata.water_m(st), &mut sum, stack);
                     }
                 }
             }
-            let water_m2 = self.cells.area_m2() * lattice.area_per_point_m2();
-            let per_m2 = water_m2 / (2.0 * self.patch.half_m).powi(2);
-            for c in 0..3 {
-                let scale = self.sun.irradiance_w_m2[c] * per_m2;
-                sum.lit[c] *= scale;
-                sum.stopped[c] *= scale;
-            }
+            let per_m2 = lattice.area_per_point_m2() / (2.0 * self.patch.half_m).powi(2);
+            sum.scale(self.light.power.map(|power| power * per_m2));
             sum
         });
         (both, rays)
@@ -204,19 +243,13 @@ impl<'a> Search<'a> {
 
     /// Rectangles of (s, t) without overlap that hold all water whose light can reach the square.
     fn pieces(&self, points: f64) -> Vec<LightWindow> {
-        let whole = self.cells.around(&self.window);
-        let middle = (whole.min_m + whole.max_m) * 0.5;
-        let half = 0.5 * (whole.max_m - whole.min_m).max_element();
-        let corner = DVec2::splat(half);
         let mut pieces = Vec::new();
-        let mut open = vec![LightWindow {
-            min_m: middle - corner,
-            max_m: middle + corner,
-        }];
+        let mut open = vec![self.strata.to_quarter(&self.window)];
         while let Some(piece) = open.pop() {
             let size = piece.max_m - piece.min_m;
             let middle = (piece.min_m + piece.max_m) * 0.5;
-            let close = match self.reach(middle, size.max_element() * self.half_diagonal_m) {
+            let (water_m, radius_m) = self.strata.middle(&piece);
+            let close = match self.reach(water_m, radius_m) {
                 Reach::Nothing => continue,
                 Reach::Within(reach_m) => reach_m < CLOSE * self.patch.half_m,
                 Reach::Unknown => false,
@@ -238,58 +271,38 @@ impl<'a> Search<'a> {
         pieces
     }
 
-    /// The ray that enters at `water_m`; `None` where the water faces away from the sun.
-    fn bend(&self, water_m: DVec2) -> Option<Bent> {
-        let SurfacePoint { height_m, slope } = self.place.facts.surface.at(water_m.x, water_m.y);
-        let l = self.sun.to_light;
-        let facing = l.y - slope.x * l.x - slope.y * l.z;
-        if facing <= 0.0 {
-            return None;
-        }
-        let normal = normal_from_slope(slope.x, slope.y);
-        let cos_i = normal.dot(l).clamp(0.0, 1.0);
-        let ior = self.place.facts.ior;
-        Some(Bent {
-            from_m: DVec3::new(water_m.x, height_m, water_m.y),
-            direction: -l / ior + normal * self.turn(cos_i),
-            facing,
-            cos_i,
-        })
-    }
-
-    /// g(c) = c/η − cos θ_t, the factor of the normal in the refracted direction −l/η + g n, for c = cos θ_i.
-    fn turn(&self, cos_i: f64) -> f64 {
-        let ior = self.place.facts.ior;
-        cos_i / ior - (1.0 - (1.0 - cos_i * cos_i) / (ior * ior)).max(0.0).sqrt()
-    }
-
-    /// What the rays of the piece around `st` can reach whose corners lie `radius_m` away.
+    /// What the rays of the piece around `water_m` can reach whose corners lie `radius_m` away.
     ///
-    /// Within the piece the slope changes by at most the curvature times the radius, the unit normal by no more than that, and
-    /// the direction t = −l/η + g(c) n by at most (|g| + g′) of it; both g′ and |g| are largest at the smallest c.
-    fn reach(&self, st: DVec2, radius_m: f64) -> Reach {
-        let water_m = self.cells.water_m(st);
+    /// Within the piece the slope changes by at most the curvature times the radius, the unit normal by no more than that, and the
+    /// unit vector to a point light by at most δ/(r − δ) when its start moves by δ. So the cosine changes by at most the sum c′ of
+    /// the two, and the direction t = −l/η + g(c) n by at most |δl|/η + |g| |δn| + g′ c′; both g′ and |g| are largest at the smallest c.
+    fn reach(&self, water_m: DVec2, radius_m: f64) -> Reach {
         let (at, bend_per_m) = self.place.curved(water_m, radius_m);
         let from_m = DVec3::new(water_m.x, at.height_m, water_m.y);
         let bend = (bend_per_m * radius_m).min(2.0 * self.place.steepest);
         let steepest = self.place.steepest.min(at.slope.length() + bend);
         let moved_m = radius_m * steepest.hypot(1.0);
         let normal = normal_from_slope(at.slope.x, at.slope.y);
-        let cosine = normal.dot(self.sun.to_light);
-        if cosine + bend <= 0.0 {
+        let (to_light, distance_m) = self.light.toward(from_m);
+        if distance_m <= moved_m {
+            return Reach::Unknown;
+        }
+        let spread = moved_m / (distance_m - moved_m);
+        let cosine = normal.dot(to_light);
+        if cosine + bend + spread <= 0.0 {
             return Reach::Nothing;
         }
         if cosine <= 0.0 {
             return Reach::Unknown;
         }
         let ior = self.place.facts.ior;
-        let least = (cosine - bend).max(0.0);
+        let least = (cosine - bend - spread).max(0.0);
         let cos_t = (1.0 - (1.0 - least * least) / (ior * ior))
             .max(1e-12)
             .sqrt();
-        let turned =
-            bend * (self.turn(least).abs() + (1.0 / ior - least / (ior * ior * cos_t)).max(0.0));
-        let direction = -self.sun.to_light / ior + normal * self.turn(cosine);
+        let per_cosine = (1.0 / ior - least / (ior * ior * cos_t)).max(0.0);
+        let turned = spread / ior + bend * turn(least, ior).abs() + (bend + spread) * per_cosine;
+        let direction = -to_light / ior + normal * turn(cosine, ior);
         if self.misses_ball(from_m, moved_m, direction, turned) {
             return Reach::Nothing;
         }
@@ -310,9 +323,9 @@ impl<'a> Search<'a> {
         apart > turned + 2.0 * blur_m / (2.0 * distance_m - blur_m)
     }
 
-    /// Books the ray that enters at `water_m` if it crosses the square against its normal.
-    fn count(&self, water_m: DVec2, sum: &mut Sunlight, stack: &mut Vec<usize>) {
-        let Some(ray) = self.bend(water_m) else {
+    /// Books the ray that enters at `water_m` and stands for `m2` of water, if it crosses the square against its normal.
+    fn count(&self, (water_m, m2): (DVec2, f64), sum: &mut Landed, stack: &mut Vec<usize>) {
+        let Some(ray) = self.light.bend(self.place, water_m) else {
             return;
         };
         let patch = self.patch;
@@ -332,42 +345,8 @@ impl<'a> Search<'a> {
             return;
         }
         let facts = &self.place.facts;
-        let entered = ray.facing * fresnel_transmittance(ray.cos_i, facts.ior);
-        let blocked = self.blocked(&ray, to_m, path_m, stack);
-        let target = if blocked {
-            &mut sum.stopped
-        } else {
-            &mut sum.lit
-        };
-        let [r, g, b] = facts.extinction_per_m;
-        if r == g && g == b {
-            let arrived = entered * transmission(r, path_m);
-            target.iter_mut().for_each(|sum| *sum += arrived);
-        } else {
-            for (sum, c) in target.iter_mut().zip([r, g, b]) {
-                *sum += entered * transmission(c, path_m);
-            }
-        }
-    }
-
-    fn blocked(&self, ray: &Bent, to_m: DVec3, path_m: f64, stack: &mut Vec<usize>) -> bool {
-        let patch = self.patch;
-        if let Some(floor) = &self.place.facts.floor
-            && patch.object.is_some()
-            && to_m.y < floor.y_m
-        {
-            let p = ray.from_m + ray.direction * ((floor.y_m - ray.from_m.y) / ray.direction.y);
-            let p = DVec2::new(p.x, p.z);
-            if p.cmpge(floor.rect.min).all() && p.cmple(floor.rect.max).all() {
-                return true;
-            }
-        }
-        if !self.may_be_shaded || path_m <= 0.0 {
-            return false;
-        }
-        let own_until = 1.0 - OWN_REACH * 2.0 * patch.half_m / path_m;
-        self.place
-            .occluders
-            .blocks(ray.from_m, to_m, patch.object, own_until, stack)
+        let entered = m2 * ray.facing * fresnel_transmittance(ray.cos_i, facts.ior);
+        let blocked = patch.blocked(self.place, ray.from_m, to_m, self.may_be_shaded, stack);
+        sum.book(entered, facts.extinction_per_m, path_m, blocked);
     }
 }

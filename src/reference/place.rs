@@ -1,27 +1,30 @@
 //! A scene in local coordinates, as the engines for views and objects need it.
 
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
 use super::ReferenceError;
 use super::checks::{check_surface, check_water, point_lights, suns};
+use super::light::PlacedLight;
 use super::occluders::Occluders;
-use crate::physics::refraction::{direction_to_light, refract_direction};
+use super::window::LampDrift;
 use crate::physics::sky::sky_irradiance;
 use crate::physics::turns::sin_cos_turns;
-use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
+use crate::scene::source::Source;
+use crate::scene::{Light, ResolvedScene};
 use crate::waves::SurfacePoint;
 
 /// Water, meshes and lights around the local origin of [`SceneFacts`].
 pub(super) struct Place {
-    /// Camera, floor, sky and boxes, as the scene says. Of its suns only the boxes are used.
+    /// Camera, floor and sky, as the scene says.
     pub(super) facts: SceneFacts,
     /// Meshes, in the same coordinates.
     pub(super) occluders: Occluders,
-    /// Suns above the horizon that the output counts.
-    pub(super) suns: Vec<PlacedSun>,
+    /// Suns above the horizon and point lights above the floor that the output counts: first the suns.
+    pub(super) lights: Vec<PlacedLight>,
     /// Largest second derivative of the water's height along any direction, 1/m.
     pub(super) bend_per_m: f64,
     /// Largest third derivative, 1/m².
@@ -30,39 +33,33 @@ pub(super) struct Place {
     pub(super) steepest: f64,
 }
 
-/// A sun.
-pub(super) struct PlacedSun {
-    pub(super) to_light: DVec3,
-    pub(super) irradiance_w_m2: [f64; 3],
-    /// Unit direction of its light under flat water.
-    pub(super) flat: DVec3,
-}
-
 impl Place {
     pub(super) fn of(resolved: &ResolvedScene) -> Result<Self, ReferenceError> {
         let scene = &resolved.scene;
         check_water(&scene.water)?;
-        let suns = suns(scene)?;
-        if !point_lights(scene)?.is_empty() {
-            return Err(ReferenceError::PointLight);
-        }
+        let (suns, lamps) = (suns(scene)?, point_lights(scene)?);
         let facts =
             SceneFacts::of(resolved).map_err(|error| ReferenceError::Scene(error.to_string()))?;
         check_surface(&facts.surface)?;
         let occluders = Occluders::of(resolved, DVec2::new(facts.origin_m.x, facts.origin_m.z))?;
-        let suns = suns
-            .into_iter()
-            .filter(|sun| sun.irradiance_w_m2.iter().any(|&e| e > 0.0))
-            .filter_map(|sun| {
-                let to_light = direction_to_light(
-                    sun.elevation_deg.to_radians(),
-                    sun.azimuth_deg.to_radians(),
-                );
-                Some(PlacedSun {
-                    to_light,
-                    irradiance_w_m2: sun.irradiance_w_m2,
-                    flat: refract_direction(-to_light, DVec3::Y, facts.ior)?,
-                })
+        let suns = suns.into_iter().cloned().map(Light::Sun);
+        let counted = suns.chain(lamps.into_iter().cloned().map(Light::Point));
+        let drift = OnceCell::new();
+        let lights = counted
+            .filter_map(|light| Source::of(&light, facts.origin_m, &facts.surface))
+            .filter(|(source, power)| {
+                let floor_y_m = facts.floor.as_ref().map(|floor| floor.y_m);
+                let lamp_y_m = source.position_m().map(|p| p.y);
+                let buried = lamp_y_m
+                    .zip(floor_y_m)
+                    .is_some_and(|(lamp, floor)| lamp <= floor);
+                !buried && power.iter().any(|&e| e > 0.0)
+            })
+            .map(|(source, power)| PlacedLight {
+                source,
+                power,
+                drift: matches!(source, Source::Point { .. })
+                    .then(|| *drift.get_or_init(|| LampDrift::of(&facts.surface, facts.ior))),
             })
             .collect();
         let derivative = |order: i32| -> f64 {
@@ -77,7 +74,7 @@ impl Place {
             twist_per_m2: derivative(3),
             facts,
             occluders,
-            suns,
+            lights,
         })
     }
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 pub struct ReferenceSettings {
     /// Relative L1 error at which the map is good enough, above 0; `None`: spend all of `max_rays` at once.
     pub target_error: Option<f64>,
-    /// Most rays of a round, both halves and all suns together, 1 …
+    /// Most rays of a round, both halves and all lights together, 1 …
     pub max_rays: u64,
     /// Rays of the first round, 1 …
     pub initial_rays: u64,
@@ -45,7 +45,7 @@ impl ReferenceSettings {
 pub struct TruthSettings {
     /// Relative L1 error at which the truth is good enough, above 0; `None`: spend `max_rays`.
     pub target_error: Option<f64>,
-    /// Most rays of a round, both halves and all suns together, 1 …
+    /// Most rays of a round, both halves and all lights together, 1 …
     pub max_rays: u64,
     /// Most pixels of a view that are looked at, 1 …; maps are always whole.
     pub most_points: u32,
@@ -120,11 +120,6 @@ pub enum ReferenceError {
         /// Length of `lights`.
         lights: usize,
     },
-    /// Point lights in views and on objects are not counted.
-    #[error(
-        "the reference counts point lights in maps on the floor only; a view or a map on an object must have suns and skies alone"
-    )]
-    PointLight,
     /// Skies are not counted.
     #[error("the reference counts suns and point lights only; output.include_sky must be false")]
     IncludesSky,

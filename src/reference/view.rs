@@ -7,10 +7,12 @@ use rayon::prelude::*;
 
 use super::camera::{ViewPoint, Viewer};
 use super::map::{MOST_GROWTH, ORDER, half_difference, mean, share};
-use super::patch::{Patch, Search, Sunlight};
+use super::patch::{Landed, Patch, Search};
 use super::place::Place;
+use super::shine::shine;
 use super::tally::add_to;
 use super::{ReferenceError, Truth, TruthKind, TruthSettings};
+use crate::scene::source::Source;
 use crate::scene::{Output, ResolvedScene};
 
 /// Rays per footprint of evenly lit water in the first round, each half.
@@ -55,14 +57,14 @@ impl PixelGrid {
 struct Lit {
     point: ViewPoint,
     patch: Patch,
-    /// Skies, and in the air the suns, W/m².
+    /// Skies, and in the air all lights, W/m².
     known: [f64; 3],
     /// Of a dry point: what the meshes hold back.
     stopped: [f64; 3],
 }
 
 /// One round: per point two halves, and the rays counted.
-type Counted = ([Sunlight; 2], u64);
+type Counted = ([Landed; 2], u64);
 
 /// The truth at the points that the camera of `resolved` sees.
 pub(super) fn view(
@@ -95,8 +97,8 @@ pub(super) fn view(
         let mut both = halves[0];
         both.add(&halves[1]);
         if lit.point.dry {
-            // The known light of a dry point has skies in it; what the suns bring alone is asked for again.
-            let open = suns_in_air(&place, &lit.point).lit;
+            // The known light of a dry point has skies in it; what the others bring alone is asked for again.
+            let open = lights_in_air(&place, &lit.point).lit;
             return share(lit.stopped.iter().sum(), open.iter().sum());
         }
         share(both.stopped.iter().sum(), both.lit.iter().sum())
@@ -127,9 +129,9 @@ fn lit(place: &Place, point: ViewPoint) -> Lit {
     let mut known = place.sky_w_m2(point.position_m, point.normal, point.dry);
     let mut stopped = [0.0; 3];
     if point.dry {
-        let suns = suns_in_air(place, &point);
-        stopped = suns.stopped;
-        add_to(&mut known, &suns.lit);
+        let lights = lights_in_air(place, &point);
+        stopped = lights.stopped;
+        add_to(&mut known, &lights.lit);
     }
     Lit {
         point,
@@ -139,25 +141,31 @@ fn lit(place: &Place, point: ViewPoint) -> Lit {
     }
 }
 
-/// Suns on a point above the water, with exact shadows.
-fn suns_in_air(place: &Place, point: &ViewPoint) -> Sunlight {
-    let mut sum = Sunlight::default();
+/// Suns and point lights above the water on a point above it, with exact shadows.
+fn lights_in_air(place: &Place, point: &ViewPoint) -> Landed {
+    let mut sum = Landed::default();
     let mut stack = Vec::new();
-    for sun in &place.suns {
-        let cosine = point.normal.dot(sun.to_light);
-        if cosine <= 0.0 {
+    for light in &place.lights {
+        if matches!(light.source, Source::Submerged { .. }) {
             continue;
         }
-        let from_m: DVec3 = point.position_m + sun.to_light * OWN_M;
+        let (to_light, distance_m) = light.toward(point.position_m);
+        let cosine = point.normal.dot(to_light);
+        if cosine.is_nan() || cosine <= 0.0 {
+            continue;
+        }
+        let from_m: DVec3 = point.position_m + to_light * OWN_M;
+        let until_m = distance_m.min(f64::MAX);
         let blocker = place
             .occluders
-            .first_seen(from_m, sun.to_light, f64::MAX, &mut stack);
+            .first_seen(from_m, to_light, until_m, &mut stack);
         let target = if blocker.is_some() {
             &mut sum.stopped
         } else {
             &mut sum.lit
         };
-        add_to(target, &sun.irradiance_w_m2.map(|e| e * cosine));
+        let facing = cosine * light.facing_w_m2(distance_m);
+        add_to(target, &light.power.map(|e| e * facing));
     }
     sum
 }
@@ -235,13 +243,26 @@ fn round(
         .collect()
 }
 
-/// All suns on one square.
+/// All lights through the water and under it on one square.
 fn count_point(place: &Place, patch: &Patch, per_patch: f64, index: usize) -> Counted {
     let mut sum = Counted::default();
     let mut stack = Vec::new();
-    for (nth, sun) in place.suns.iter().enumerate() {
-        let key = (index * place.suns.len() + nth) as u64;
-        let (halves, rays) = Search::new(place, sun, patch).light(per_patch, key, &mut stack);
+    for (nth, light) in place.lights.iter().enumerate() {
+        let key = (index * place.lights.len() + nth) as u64;
+        let (halves, rays) = if let Source::Submerged { position_m } = light.source {
+            shine(
+                place,
+                light,
+                position_m,
+                patch,
+                (per_patch, key),
+                &mut stack,
+            )
+        } else if let Some(search) = Search::new(place, light, patch) {
+            search.light(per_patch, key, &mut stack)
+        } else {
+            continue;
+        };
         for (sum, half) in sum.0.iter_mut().zip(&halves) {
             sum.add(half);
         }

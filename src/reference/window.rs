@@ -1,5 +1,7 @@
 //! The piece of water that can light a map.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use glam::{DVec2, DVec3};
 
 use crate::physics::refraction::{direction_to_light, normal_from_slope, refract_direction};
@@ -24,11 +26,17 @@ pub struct LightWindow {
 }
 
 impl LightWindow {
-    fn empty() -> Self {
+    /// No water.
+    pub(super) fn empty() -> Self {
         Self {
             min_m: DVec2::INFINITY,
             max_m: DVec2::NEG_INFINITY,
         }
+    }
+
+    /// Whether a point lies in it.
+    pub(super) fn contains(&self, point_m: DVec2) -> bool {
+        point_m.cmpge(self.min_m).all() && point_m.cmple(self.max_m).all()
     }
 
     fn include(&mut self, point_m: DVec2) {
@@ -94,57 +102,76 @@ pub(super) fn window_of(
 const INCIDENCES: u32 = 32;
 const AZIMUTHS: u32 = 16;
 
-/// The water whose light from `position_m`, above it, can reach any of `targets`.
-///
-/// Under flat water every ray goes on away from the point under the light, so that what lands in a target has entered between the
-/// two; waves turn it aside by at most as much as they do at any incidence.
-pub(super) fn lamp_window(
-    surface: &WaterSurface,
-    position_m: DVec3,
-    ior: f64,
-    targets: &[Target],
-) -> LightWindow {
-    let mut aside: f64 = 0.0;
-    let mut farthest: f64 = 0.0;
-    for i in 0..=INCIDENCES {
-        let incidence = std::f64::consts::FRAC_PI_2 * f64::from(i) / f64::from(INCIDENCES) * 0.9999;
-        let azimuths = if surface.max_slope() > 0.0 {
-            AZIMUTHS
-        } else {
-            1
+/// How far the waves turn the rays of a point light above them, metres sideways per metre down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LampDrift {
+    /// Most that a ray is turned aside from its way under flat water.
+    aside: f64,
+    /// Most that a ray goes sideways at all.
+    farthest: f64,
+}
+
+impl LampDrift {
+    /// Over all incidences, those from below the horizon too: the flank of a wave can face a light that is lower.
+    pub(super) fn of(surface: &WaterSurface, ior: f64) -> Self {
+        let mut drift = Self {
+            aside: 0.0,
+            farthest: 0.0,
         };
-        for j in 0..azimuths {
-            let azimuth = std::f64::consts::TAU * f64::from(j) / f64::from(azimuths);
-            let to_light = direction_to_light(std::f64::consts::FRAC_PI_2 - incidence, azimuth);
-            let offsets = offsets_per_depth(surface, to_light, ior);
-            // The first slope is none at all.
-            for offset in &offsets {
-                farthest = farthest.max(offset.length());
-                aside = aside.max((*offset - offsets[0]).length());
+        let wavy = surface.max_slope() > 0.0;
+        let grazing = FRAC_PI_2 * 0.9999;
+        let steepest = grazing + surface.max_slope().atan();
+        for i in 0..=INCIDENCES {
+            let incidence = steepest * f64::from(i) / f64::from(INCIDENCES);
+            for j in 0..if wavy { AZIMUTHS } else { 1 } {
+                let azimuth = TAU * f64::from(j) / f64::from(AZIMUTHS);
+                let to_light = direction_to_light(FRAC_PI_2 - incidence, azimuth);
+                let level = direction_to_light(FRAC_PI_2 - incidence.min(grazing), azimuth);
+                let Some(flat) = refract_direction(-level, DVec3::Y, ior) else {
+                    continue;
+                };
+                let sideways = DVec2::new(flat.x, flat.z);
+                let flat = sideways / (-flat.y).max(sideways.length() / FLATTEST);
+                for offset in offsets_per_depth(surface, to_light, ior) {
+                    drift.farthest = drift.farthest.max(offset.length());
+                    drift.aside = drift.aside.max((offset - flat).length());
+                }
             }
         }
+        drift
     }
-    let crest_m = surface.max_height_m();
-    let foot_m = DVec2::new(position_m.x, position_m.z);
-    let mut between = LightWindow::empty();
-    let mut near = LightWindow::empty();
-    for target in targets.iter().filter(|t| t.min_m.y <= crest_m) {
-        let deep_m = (crest_m - target.min_m.y).max(0.0);
-        let corners = [
-            DVec2::new(target.min_m.x, target.min_m.z),
-            DVec2::new(target.max_m.x, target.max_m.z),
-        ];
-        for corner_m in corners {
-            for side in [DVec2::NEG_ONE, DVec2::ONE] {
-                near.include(corner_m + side * (1.02 * farthest * deep_m));
-                between.include(corner_m + side * (1.02 * aside * deep_m));
-                between.include(foot_m + side * (1.02 * aside * deep_m));
+
+    /// The water whose light from `position_m`, above it, can reach any of `targets`, under crests of `crest_m`.
+    ///
+    /// Under flat water every ray goes on away from the point under the light, so that what lands in a target has entered between the
+    /// two; waves turn it aside by at most as much as they do at any incidence.
+    pub(super) fn window(
+        &self,
+        crest_m: f64,
+        position_m: DVec3,
+        targets: &[Target],
+    ) -> LightWindow {
+        let foot_m = DVec2::new(position_m.x, position_m.z);
+        let mut between = LightWindow::empty();
+        let mut near = LightWindow::empty();
+        for target in targets.iter().filter(|t| t.min_m.y <= crest_m) {
+            let deep_m = (crest_m - target.min_m.y).max(0.0);
+            let corners = [
+                DVec2::new(target.min_m.x, target.min_m.z),
+                DVec2::new(target.max_m.x, target.max_m.z),
+            ];
+            for corner_m in corners {
+                for side in [DVec2::NEG_ONE, DVec2::ONE] {
+                    near.include(corner_m + side * (1.02 * self.farthest * deep_m));
+                    between.include(corner_m + side * (1.02 * self.aside * deep_m));
+                    between.include(foot_m + side * (1.02 * self.aside * deep_m));
+                }
             }
         }
-    }
-    LightWindow {
-        min_m: between.min_m.max(near.min_m),
-        max_m: between.max_m.min(near.max_m),
+        LightWindow {
+            min_m: between.min_m.max(near.min_m),
+            max_m: between.max_m.min(near.max_m),
+        }
     }
 }
 

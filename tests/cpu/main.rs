@@ -38,6 +38,7 @@ mod project;
 mod reference;
 mod reference_closed_form;
 mod reference_errors;
+mod reference_lamps;
 mod reference_lens;
 mod reference_meshes;
 mod scene_facts;
