@@ -92,10 +92,10 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     ShaderPlant {
         family: "fold",
         file: "shared/footprint.wgsl",
-        from: "let per_area = 2.0 / ((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));",
-        to: "let per_area = 2.0 / abs((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));",
+        from: "let turn = sign((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));",
+        to: "let turn = 1.0;",
         cases: &["footprints_that_turn_inside_out"],
-        what: "footprints that turn inside out lose their flux",
+        what: "footprints that turn inside out are dealt out as if they had no area",
     },
     ShaderPlant {
         family: "fold",

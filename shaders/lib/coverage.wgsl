@@ -29,3 +29,13 @@ fn tent_share_below(t: f32, t_0: f32, t_peak: f32, t_1: f32) -> f32 {
     if t < t_peak { return (t - t_0) / length * ((t - t_0) / max(t_peak - t_0, SMALLEST_NORMAL)); }
     return 1.0 - (t_1 - t) / length * ((t_1 - t) / max(t_1 - t_peak, SMALLEST_NORMAL));
 }
+
+// Share of that density between heights `t_a` ≤ `t_b`. Unlike a difference of two shares below it keeps its digits where the piece
+// is short against the tent.
+fn tent_share_between(t_a: f32, t_b: f32, t_0: f32, t_peak: f32, t_1: f32) -> f32 {
+    let length = max(t_1 - t_0, SMALLEST_NORMAL);
+    let rise = clamp(vec2f(t_a, t_b), vec2f(t_0), vec2f(t_peak));
+    let fall = clamp(vec2f(t_a, t_b), vec2f(t_peak), vec2f(t_1));
+    return (rise.y - rise.x) / length * (((rise.x - t_0) + (rise.y - t_0)) / max(t_peak - t_0, SMALLEST_NORMAL))
+        + (fall.y - fall.x) / length * (((t_1 - fall.x) + (t_1 - fall.y)) / max(t_1 - t_peak, SMALLEST_NORMAL));
+}

@@ -5,6 +5,8 @@
 // f32 rounding in the coverage would pass 10⁻³ of the triangle's flux, while moving the flux by less than 10⁻³ texel does not show.
 const POINT_SIDE: f32 = 1e-3;
 const SEGMENT_SHAPE: f32 = 4e-4;
+// Area (texel²) under which a row of a footprint has none: its share, no more than rounding, goes to the row's first texel.
+const FLAT_ROW: f32 = 1e-30;
 
 struct Target {
     offset: u32,
@@ -116,9 +118,11 @@ fn deposit_area(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux:
     // In one texel, or wholly past one side of the map: all of it goes one way.
     let whole = all(box.first == box.last) || any(box.last < vec2i(0)) || any(box.first >= size);
     if whole { box.last = box.first; }
-    let per_area = 2.0 / ((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));
     let lo = min(p, min(q, r));
     let hi = max(p, max(q, r));
+    let middle_y = max(min(p.y, q.y), min(max(p.y, q.y), r.y));
+    // Counted the other way round the areas of a footprint that is turned inside out are negative.
+    let turn = sign((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));
     var beside = 0.0;
     for (var y = box.first.y; y <= box.last.y; y++) {
         let row = cell_bounds(y, size.y, base.y, lo.y, hi.y);
@@ -127,10 +131,17 @@ fn deposit_area(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux:
         var column_last = clamp(i32(floor(row_high(edges) + base.x)), box.first.x, box.last.x);
         let start = cell_bounds(column_first, size.x, base.x, lo.x, hi.x).x;
         let near = moved(edges, start);
-        var right = area_right_of(near, 0.0);
+        // The row's share of the flux comes from the corners' heights alone and is dealt out by what of the row's area lies in each
+        // column, never less than nothing and in all the whole: however thin the footprint, and however much rounding is in its
+        // areas, all shares together are 1.
+        var right = turn * area_right_of(near, 0.0);
+        let is_flat = right < FLAT_ROW;
+        right = select(right, 1.0, is_flat);
+        let per_area = tent_share_between(row.x, row.y, lo.y, middle_y, hi.y) / right;
         for (var x = column_first; x <= column_last; x++) {
-            let next = area_right_of(near, cell_bounds(x, size.x, base.x, lo.x, hi.x).y - start);
-            let share = select(max((right - next) * per_area, 0.0), 1.0, whole);
+            let beyond = turn * area_right_of(near, cell_bounds(x, size.x, base.x, lo.x, hi.x).y - start);
+            let next = select(clamp(beyond, 0.0, right), 0.0, x == column_last);
+            let share = select((right - next) * per_area, 1.0, whole);
             right = next;
             beside += deposit_share(target_map, x, y, share, triangle_flux);
         }

@@ -43,3 +43,29 @@ pub fn tent_share_below(t: f64, t_0: f64, t_peak: f64, t_1: f64) -> f64 {
         1.0 - (t_1 - t) / length * ((t_1 - t) / (t_1 - t_peak))
     }
 }
+
+/// Share of that density between `t_a` ≤ `t_b`: of each side the piece's length times the sum of the densities at its ends. Also the
+/// share of a triangle between two heights, when the places are those of its corners. (Ours.)
+pub fn tent_share_between(t_a: f64, t_b: f64, t_0: f64, t_peak: f64, t_1: f64) -> f64 {
+    let length = t_1 - t_0;
+    let side = |from: f64, to: f64, ends: f64, side_length: f64| {
+        if to > from {
+            (to - from) / length * (ends / side_length)
+        } else {
+            0.0
+        }
+    };
+    let (rise_a, rise_b) = (t_a.clamp(t_0, t_peak), t_b.clamp(t_0, t_peak));
+    let (fall_a, fall_b) = (t_a.clamp(t_peak, t_1), t_b.clamp(t_peak, t_1));
+    side(
+        rise_a,
+        rise_b,
+        (rise_a - t_0) + (rise_b - t_0),
+        t_peak - t_0,
+    ) + side(
+        fall_a,
+        fall_b,
+        (t_1 - fall_a) + (t_1 - fall_b),
+        t_1 - t_peak,
+    )
+}

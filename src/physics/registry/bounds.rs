@@ -115,6 +115,11 @@ pub(super) fn tent(a: &[f64]) -> f64 {
     (4.0 * SMALLEST_NORMAL / (high - low)).min(1.0)
 }
 
+/// Of a tent's share for (two heights, and its three places in any order).
+pub(super) fn tent_piece(a: &[f64]) -> f64 {
+    2.0 * tent(&a[1..])
+}
+
 /// Of a cone's share for (n_y, sin²σ).
 pub(super) fn cone(a: &[f64]) -> f64 {
     // Terms of the size of sin σ are added up, and divided by π sin²σ.

@@ -248,7 +248,7 @@ fn vector(v: DVec3, last: f64) -> Option<[f64; 4]> {
 }
 
 /// All twins.
-pub const TWINS: [Twin; 19] = [
+pub const TWINS: [Twin; 20] = [
     Twin {
         name: "plane_depth",
         file: "lib/slicing.wgsl",
@@ -498,6 +498,29 @@ pub const TWINS: [Twin; 19] = [
             0.0,
             bounds::tent,
             "derived: two quotients and five more roundings of values up to 1",
+        ),
+    },
+    Twin {
+        name: "tent_share_between",
+        file: "lib/coverage.wgsl",
+        domain: &[PLACE, PLACE, PLACE, PLACE, PLACE],
+        call: "vec4f(tent_share_between(min(a[0], a[1]), max(a[0], a[1]), min(min(a[2], a[3]), a[4]), max(min(a[2], a[3]), min(max(a[2], a[3]), a[4])), max(max(a[2], a[3]), a[4])), 0.0, 0.0, 0.0)",
+        original: |a| {
+            let mut places = [a[2], a[3], a[4]];
+            places.sort_by(f64::total_cmp);
+            scalar(coverage::tent_share_between(
+                a[0].min(a[1]),
+                a[0].max(a[1]),
+                places[0],
+                places[1],
+                places[2],
+            ))
+        },
+        tolerance: tolerance(
+            SMALLEST_NORMAL,
+            16.0 * U,
+            bounds::tent_piece,
+            "derived: two quotients and six more roundings a side, no difference of rounded numbers",
         ),
     },
     Twin {
