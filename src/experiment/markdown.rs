@@ -124,12 +124,13 @@ fn quality(text: &mut String, mesh: &MeshResult) {
             error(p.uniform.error),
         );
     }
-    text.push_str("\nPlacement by hits:\n\n| water cells | ms | error |\n|---:|---:|---:|\n");
+    text.push_str("\nPlacement by hits:\n\n| water cells | split levels | ms | error |\n|---:|---:|---:|---:|\n");
     for hit in &mesh.hits {
         let _ = writeln!(
             text,
-            "| {} | {} | {} |",
+            "| {} | {} | {} | {} |",
             hit.water_cells,
+            hit.split_levels,
             ms(hit.figures.ms.median),
             error(hit.figures.error)
         );
@@ -169,10 +170,12 @@ fn summary(text: &mut String, e: &Experiment) {
         let (Some(half), Some(full)) = (near(mesh, 50), near(mesh, most)) else {
             continue;
         };
-        let hit = mesh
-            .hits
-            .iter()
-            .min_by_key(|h| h.water_cells.abs_diff(e.water_cells));
+        let hit = mesh.hits.iter().min_by_key(|h| {
+            (
+                h.water_cells.abs_diff(e.water_cells),
+                std::cmp::Reverse(h.split_levels),
+            )
+        });
         let error = |value: Option<f64>| value.map_or_else(String::new, percent);
         let over = |p: &PlanePoint| ratio(p.volumetric.ms.median, p.uniform.ms.median);
         let _ = writeln!(

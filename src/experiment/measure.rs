@@ -19,6 +19,8 @@ const OWN_PASSES: [&str; 3] = ["depth_profile", "planes", "volumetric"];
 const WAYS_BY_PLANES: usize = 3;
 /// Water cells that placement by hits is measured with.
 const HIT_CELLS: [u32; 8] = [24, 32, 48, 64, 96, 128, 192, 256];
+/// Split levels that each number of cells is measured with: none, as planes have it, and the default.
+const HIT_SPLIT_LEVELS: [u32; 2] = [0, 2];
 
 /// What is measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,8 +78,9 @@ pub fn measure(
     find_truth: &mut FindTruth<'_>,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Result<Experiment, ExperimentError> {
-    let each = (WAYS_BY_PLANES * settings.planes.len() + HIT_CELLS.len())
-        * (settings.runs.max(1) as usize + 1);
+    let settings_of_each =
+        WAYS_BY_PLANES * settings.planes.len() + HIT_CELLS.len() * HIT_SPLIT_LEVELS.len();
+    let each = settings_of_each * (settings.runs.max(1) as usize + 1);
     let total = settings.meshes.len() * each;
     let mut experiment = Experiment {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -102,9 +105,14 @@ pub fn measure(
             ]
         });
         let mut scenes: Vec<ResolvedScene> = by_planes.map(|way| way.of(&base)).collect();
-        scenes.extend(HIT_CELLS.map(|water_cells| {
+        let hits: Vec<(u32, u32)> = HIT_CELLS
+            .into_iter()
+            .flat_map(|cells| HIT_SPLIT_LEVELS.map(|levels| (cells, levels)))
+            .collect();
+        scenes.extend(hits.iter().map(|&(water_cells, split_levels)| {
             let mut hit = Way::Hit.of(&base);
             hit.scene.quality.water_cells = water_cells;
+            hit.scene.quality.split_levels = split_levels;
             hit
         }));
         let measured = timed(&scenes, settings.runs, render, &mut |rendered| {
@@ -117,7 +125,7 @@ pub fn measure(
                 ),
             );
         })?;
-        let (by_planes, hits) = measured.split_at(WAYS_BY_PLANES * settings.planes.len());
+        let (by_planes, by_hits) = measured.split_at(WAYS_BY_PLANES * settings.planes.len());
         let mut result = MeshResult {
             name: name.clone(),
             triangles: base.meshes[0].triangles.len() as u64,
@@ -131,11 +139,12 @@ pub fn measure(
         {
             result.planes.push(plane_point(&base, planes, ways, truth)?);
         }
-        for (water_cells, way) in HIT_CELLS.into_iter().zip(hits) {
+        for ((water_cells, split_levels), way) in hits.into_iter().zip(by_hits) {
             experiment.adapter = way.frame.stats.adapter.clone();
             let figures = way.figures(truth)?;
             result.hits.push(HitPoint {
                 water_cells,
+                split_levels,
                 figures,
             });
         }

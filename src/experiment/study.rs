@@ -119,6 +119,8 @@ pub struct WayFigures {
 pub struct HitPoint {
     /// Water cells along each side of the window.
     pub water_cells: u32,
+    /// How often a beam that straddles receivers is halved.
+    pub split_levels: u32,
     /// What it costs.
     pub figures: WayFigures,
 }

@@ -88,6 +88,10 @@ fn error_study(experiment: &Experiment, mesh: &MeshResult) -> Study {
             .map(|p| point(p.planes, &of(p)))
             .collect()
     };
+    let hits = |of: &dyn Fn(u32) -> bool| {
+        let wanted = mesh.hits.iter().filter(|h| of(h.split_levels));
+        wanted.map(|h| point(h.water_cells, &h.figures)).collect()
+    };
     let mut study = Study {
         scene: mesh.name.clone(),
         adapter: experiment.adapter.clone(),
@@ -97,13 +101,8 @@ fn error_study(experiment: &Experiment, mesh: &MeshResult) -> Study {
             ..TruthFigures::default()
         },
         sweeps: vec![
-            sweep(
-                "hits, water cells",
-                mesh.hits
-                    .iter()
-                    .map(|h| point(h.water_cells, &h.figures))
-                    .collect(),
-            ),
+            sweep("hits, water cells", hits(&|levels| levels > 0)),
+            sweep("hits, beams not split", hits(&|levels| levels == 0)),
             sweep("smart planes", planes(&|p| p.smart)),
             sweep("uniform planes", planes(&|p| p.uniform)),
             sweep("volumetric planes", planes(&|p| p.volumetric)),

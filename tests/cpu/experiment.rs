@@ -88,6 +88,7 @@ fn found() -> Experiment {
             .to_vec(),
         hits: vec![HitPoint {
             water_cells: 64,
+            split_levels: 2,
             figures: figures(20.0, 0.01),
         }],
     };
