@@ -52,13 +52,9 @@ pub(super) const CASES: &[Case] = &[
     Light.case(
         "a_lamp_a_millimetre_above_a_wave",
         SPREAD,
-        "relative L1 against the map of twice the cells, as the reference's own map is black here",
+        REFERENCE,
         3e-2,
-        |b| {
-            let finer = with(wavy(1e-3), &[("/quality/water_cells", json!(1024))]);
-            let truth = b.map(finer)?;
-            relative_l1(&b.map(wavy(1e-3))?, &truth)
-        },
+        |b| reference_error(b, wavy(1e-3)),
     ),
     Light.case(
         "a_lamp_a_millimetre_under_a_wave",

@@ -20,8 +20,9 @@
 //!   that of a point light under water, straight; `view`, all of them;
 //! - `closed_form` and `paraboloid`: scenes with a formula instead of rays.
 //!
-//! Model: suns are points at infinity; what a point light under water sends up to the surface ends there; waves do not shade each other and light that a surface reflects is not followed;
-//! objects stop light under the water only, not on its way to the water; light that is refracted upwards is lost.
+//! Model: suns are points at infinity; what a point light under water sends up to the surface ends there; waves do not shade each
+//! other and light that a surface reflects is not followed; objects stop light under the water only, not on its way to the water;
+//! light that is refracted upwards is lost.
 
 mod camera;
 mod checks;

@@ -53,9 +53,9 @@ impl Landed {
 
     /// Multiplies each channel.
     pub(super) fn scale(&mut self, factor: [f64; 3]) {
-        for c in 0..3 {
-            self.lit[c] *= factor[c];
-            self.stopped[c] *= factor[c];
+        for (c, factor) in factor.into_iter().enumerate() {
+            self.lit[c] *= factor;
+            self.stopped[c] *= factor;
         }
     }
 
@@ -244,7 +244,7 @@ impl<'a> Search<'a> {
     /// Rectangles of (s, t) without overlap that hold all water whose light can reach the square.
     fn pieces(&self, points: f64) -> Vec<LightWindow> {
         let mut pieces = Vec::new();
-        let mut open = vec![self.strata.to_quarter(&self.window)];
+        let mut open = vec![self.strata.start_of_quartering(&self.window)];
         while let Some(piece) = open.pop() {
             let size = piece.max_m - piece.min_m;
             let middle = (piece.min_m + piece.max_m) * 0.5;

@@ -59,7 +59,7 @@ impl Strata {
     }
 
     /// A rectangle of (s, t) that holds `window` and is worth quartering: of cells a square.
-    pub(super) fn to_quarter(&self, window: &LightWindow) -> LightWindow {
+    pub(super) fn start_of_quartering(&self, window: &LightWindow) -> LightWindow {
         let whole = self.around(window);
         match self {
             Self::Cells(_) => {

@@ -365,7 +365,7 @@ fn suns_and_lamps_add_up() {
     let with = |lights: &[Value]| {
         find(
             &pool(Vec3::splat(0.1), json!(lights), |v| {
-                v["water"]["waves"] = waves()
+                v["water"]["waves"] = waves();
             }),
             4e-3,
         )

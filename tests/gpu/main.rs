@@ -26,6 +26,7 @@ mod harness;
 mod instances;
 #[path = "../support/instances.rs"]
 mod instances_scene;
+mod lamp_truths;
 mod lamps;
 mod layers;
 mod level_maps;
