@@ -83,9 +83,6 @@ pub(super) const CASES: &[Case] = &[
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(11_000))])),
-    )
-    .known_to_fail(
-        "3.9e-3: 11 km down f32 holds the end of a ray to a millimetre, and texels are 6 cm",
     ),
     Water.case(
         "waves_over_11000_metres",

@@ -12,6 +12,8 @@ const RIM_DIRECTIONS: u32 = 64;
 const EVERYWHERE_M: f64 = 1e9;
 /// Widening for tilts between the ones looked up.
 const MARGIN: f64 = 0.01;
+/// How far f32 may be off where a ray ends, as a share of its coordinates and depth: eight spacings of numbers near 1.
+const F32_ROUNDINGS: f64 = 8.0 * f32::EPSILON as f64;
 /// Rays per side of the picture that look for the visible floor.
 const VIEW_SAMPLES: u32 = 33;
 
@@ -193,8 +195,13 @@ pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
         let rect = entry(lit.rect(), &drift, -lit.max.y - height, -lit.min.y + height);
         window = Some(window.map_or(rect, |w| w.including(rect)));
     }
-    // A margin against rounding at the rim, so that no texel at the edge misses a sliver.
-    window.map(|w| w.grown(1e-5 * w.size().max_element().max(1e-6)))
+    // A margin against rounding at the rim, so that no texel at the edge misses a sliver: a share of the window, and of how far from
+    // the origin and below the water f32 has to hold the ends of its rays.
+    let deepest_m = facts.floor.as_ref().map_or(0.0, |floor| -floor.y_m);
+    window.map(|w| {
+        let reach_m = w.min.abs().max(w.max.abs()).max_element() + deepest_m;
+        w.grown((1e-5 * w.size().max_element().max(1e-6)).max(F32_ROUNDINGS * reach_m))
+    })
 }
 
 /// The part of the floor that a camera can see, through waves and all.
