@@ -144,7 +144,7 @@ fn the_table_has_a_row_for_each_way() {
         assert_eq!(row.split(',').count(), columns, "{row}");
     }
     assert!(
-        rows[0].starts_with("sphere,1984,volumetric,3,3,1,64,9,"),
+        rows[0].starts_with("sphere,1984,volumetric,3,3,1,64,,9,"),
         "{}",
         rows[0]
     );
