@@ -1,7 +1,7 @@
 // Footprints of very many texels, shared out over lanes.
 
-// Twice the area / longest side² under which a footprint is thin: from there on f32 rounding in areas, about 10⁻⁷ side², would pass
-// 10⁻⁵ of its flux.
+// Twice the area / longest side² under which a footprint is thin: from there on f32 rounding in areas, about 10⁻⁷ side², is more than
+// 10⁻⁶ of the whole.
 const THIN_SHAPE: f32 = 0.05;
 
 // Deposits texels `first`, `first + stride` … of a wide footprint's box; returns the share beside the map.
