@@ -92,8 +92,8 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     ShaderPlant {
         family: "fold",
         file: "shared/footprint.wgsl",
-        from: "let turn = sign((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));",
-        to: "let turn = 1.0;",
+        from: "f.turn = sign((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));",
+        to: "f.turn = 1.0;",
         cases: &["footprints_that_turn_inside_out"],
         what: "footprints that turn inside out are dealt out as if they had no area",
     },

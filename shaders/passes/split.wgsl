@@ -283,7 +283,7 @@ fn split_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
         if is_segment(piece.uv[0], piece.uv[1], piece.uv[2]) {
             if lane == 0u { beside = deposit_segment(target_map, piece.uv[0], piece.uv[1], piece.uv[2], arriving); }
         } else {
-            beside = deposit_texels(target_map, piece.uv, arriving, lane, groups.y * 64u);
+            beside = deposit_wide_area(target_map, piece.uv, arriving, lane, groups.y * 64u);
         }
         if beside > 0.0 {
             for (var channel = 0u; channel < light.channels; channel++) {

@@ -100,52 +100,75 @@ fn texel_box(target_map: Target, a: vec2f, b: vec2f, c: vec2f) -> TexelBox {
     return TexelBox(first, last);
 }
 
-// Deposits a triangle that is no segment; returns the share that fell beside the map. There is one place that writes: on a CPU
-// driver both sides of every branch are run, and atomics are what costs.
-fn deposit_area(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
+// A triangle that is no segment, made ready to be dealt out row by row.
+struct Footprint {
+    base: vec2f,        // a texel corner near by: what is counted from there keeps its last bits
+    corners: mat3x2f,   // from `base`, as the next four
+    low: vec2f,
+    middle_y: f32,      // height of the corner between the lowest and the highest
+    high: vec2f,
+    turn: f32,          // −1 where it is turned inside out, and areas are negative
+    box: TexelBox,      // texels that get any of it
+    is_whole: bool,     // all of it goes to one texel
+}
+
+fn footprint_of(target_map: Target, a: vec2f, b: vec2f, c: vec2f) -> Footprint {
     let size = vec2i(target_map.width, target_map.height);
-    var box = texel_box(target_map, a, b, c);
-    // Corners relative to a texel corner near the footprint keep their last bits.
-    let base = vec2f(box.first);
-    let p = a - base;
-    let q = b - base;
-    let r = c - base;
+    var f: Footprint;
+    f.box = texel_box(target_map, a, b, c);
+    f.base = vec2f(f.box.first);
+    let p = a - f.base;
+    let q = b - f.base;
+    let r = c - f.base;
+    f.corners = mat3x2f(p, q, r);
+    f.low = min(p, min(q, r));
+    f.high = max(p, max(q, r));
+    f.middle_y = max(min(p.y, q.y), min(max(p.y, q.y), r.y));
+    f.turn = sign((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));
     let side2 = max(dot(q - p, q - p), max(dot(r - q, r - q), dot(p - r, p - r)));
     if side2 < POINT_SIDE * POINT_SIDE {
-        let middle = clamp(vec2i(floor((a + b + c) / 3.0)), box.first, box.last);
-        box = TexelBox(middle, middle);
+        let middle = clamp(vec2i(floor((a + b + c) / 3.0)), f.box.first, f.box.last);
+        f.box = TexelBox(middle, middle);
     }
-    // In one texel, or wholly past one side of the map: all of it goes one way.
-    let whole = all(box.first == box.last) || any(box.last < vec2i(0)) || any(box.first >= size);
-    if whole { box.last = box.first; }
-    let lo = min(p, min(q, r));
-    let hi = max(p, max(q, r));
-    let middle_y = max(min(p.y, q.y), min(max(p.y, q.y), r.y));
-    // Counted the other way round the areas of a footprint that is turned inside out are negative.
-    let turn = sign((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));
+    // In one texel, or wholly past one side of the map.
+    f.is_whole = all(f.box.first == f.box.last) || any(f.box.last < vec2i(0)) || any(f.box.first >= size);
+    if f.is_whole { f.box.last = f.box.first; }
+    return f;
+}
+
+// Deals out row `y` of a footprint; returns the share that fell beside the map. There is one place that writes: on a CPU driver both
+// sides of every branch are run, and atomics are what costs.
+//
+// The row's share of the flux comes from the corners' heights alone and is dealt out by what of the row's area lies in each column,
+// never less than nothing and in all the whole: however thin the footprint, and however much rounding is in its areas, all shares
+// together are 1.
+fn deposit_row(target_map: Target, f: Footprint, y: i32, triangle_flux: vec3f) -> f32 {
+    let row = cell_bounds(y, target_map.height, f.base.y, f.low.y, f.high.y);
+    let row_share = select(tent_share_between(row.x, row.y, f.low.y, f.middle_y, f.high.y), 1.0, f.is_whole);
+    let is_beside = y < 0 || y >= target_map.height;
+    let edges = clip_to_row(f.corners[0], f.corners[1], f.corners[2], row.x, row.y);
+    let column_first = clamp(i32(floor(row_low(edges) + f.base.x)), f.box.first.x, f.box.last.x);
+    let column_last = select(clamp(i32(floor(row_high(edges) + f.base.x)), f.box.first.x, f.box.last.x), column_first - 1, is_beside);
+    let start = cell_bounds(column_first, target_map.width, f.base.x, f.low.x, f.high.x).x;
+    let near = moved(edges, start);
+    var right = f.turn * area_right_of(near, 0.0);
+    right = select(right, 1.0, right < FLAT_ROW);
+    let per_area = row_share / right;
+    var beside = select(0.0, row_share, is_beside);
+    for (var x = column_first; x <= column_last; x++) {
+        let beyond = f.turn * area_right_of(near, cell_bounds(x, target_map.width, f.base.x, f.low.x, f.high.x).y - start);
+        let next = select(clamp(beyond, 0.0, right), 0.0, x == column_last);
+        beside += deposit_share(target_map, x, y, select((right - next) * per_area, row_share, f.is_whole), triangle_flux);
+        right = next;
+    }
+    return beside;
+}
+
+// Deposits a triangle that is no segment; returns the share that fell beside the map.
+fn deposit_area(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
+    let f = footprint_of(target_map, a, b, c);
     var beside = 0.0;
-    for (var y = box.first.y; y <= box.last.y; y++) {
-        let row = cell_bounds(y, size.y, base.y, lo.y, hi.y);
-        let edges = clip_to_row(p, q, r, row.x, row.y);
-        var column_first = clamp(i32(floor(row_low(edges) + base.x)), box.first.x, box.last.x);
-        var column_last = clamp(i32(floor(row_high(edges) + base.x)), box.first.x, box.last.x);
-        let start = cell_bounds(column_first, size.x, base.x, lo.x, hi.x).x;
-        let near = moved(edges, start);
-        // The row's share of the flux comes from the corners' heights alone and is dealt out by what of the row's area lies in each
-        // column, never less than nothing and in all the whole: however thin the footprint, and however much rounding is in its
-        // areas, all shares together are 1.
-        var right = turn * area_right_of(near, 0.0);
-        let is_flat = right < FLAT_ROW;
-        right = select(right, 1.0, is_flat);
-        let per_area = tent_share_between(row.x, row.y, lo.y, middle_y, hi.y) / right;
-        for (var x = column_first; x <= column_last; x++) {
-            let beyond = turn * area_right_of(near, cell_bounds(x, size.x, base.x, lo.x, hi.x).y - start);
-            let next = select(clamp(beyond, 0.0, right), 0.0, x == column_last);
-            let share = select((right - next) * per_area, 1.0, whole);
-            right = next;
-            beside += deposit_share(target_map, x, y, share, triangle_flux);
-        }
-    }
+    for (var y = f.box.first.y; y <= f.box.last.y; y++) { beside += deposit_row(target_map, f, y, triangle_flux); }
     return beside;
 }
 

@@ -178,3 +178,28 @@ fn a_floor_at_the_surface_is_lit_like_the_water() {
     let error = largest_relative(map.values(), &expected);
     assert!(error <= 1e-4, "{error:e}");
 }
+
+#[test]
+fn thin_footprints_lose_nothing() {
+    // Crests across the texels that focus a little before or behind the floor: footprints far longer than wide, but not so thin
+    // that they count as segments. Few cells and many texels make each a case for lanes that share it.
+    let focus = 1.0 / (2.0 * std::f64::consts::TAU.powi(2) * (1.0 - 1.0 / 1.333));
+    for (cells, side) in [(8, 512), (5, 1024)] {
+        for strength in [0.5, 0.9, 0.97, 1.003, 1.02, 1.1, 3.0, 20.0] {
+            let mut scene = cylinder(strength * focus, cells, side);
+            scene["water"]["waves"][0]["direction_deg"] = json!(33);
+            scene["output"]["height"] = json!(side);
+            let map = Map::from(&scene_files::scene(scene));
+            let closure = map.closure();
+            println!(
+                "{cells} cells, {side}² texels, {strength} of the focus: closure {closure:.1e}"
+            );
+            assert!(
+                closure <= 1e-6,
+                "{cells} cells, {side}², {strength}: {closure:e}"
+            );
+            let landed = map.stats.energy[0].landed_w[0];
+            assert!((map.mean(0) * 4.0 / landed - 1.0).abs() <= 1e-5);
+        }
+    }
+}
