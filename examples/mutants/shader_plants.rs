@@ -3,7 +3,7 @@
 /// An error in a shader, and who must notice it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShaderPlant {
-    /// The family of hard cases that is run against it.
+    /// The family of hard cases that it is made for.
     pub(crate) family: &'static str,
     /// File below `shaders/`.
     pub(crate) file: &'static str,
@@ -11,7 +11,7 @@ pub(crate) struct ShaderPlant {
     pub(crate) from: &'static str,
     /// What is put there instead.
     pub(crate) to: &'static str,
-    /// Cases of the family that must fail, every one; others may.
+    /// Cases, of all families, that must fail; no other may.
     pub(crate) cases: &'static [&'static str],
     /// What it breaks, for people.
     pub(crate) what: &'static str,

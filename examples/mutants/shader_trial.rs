@@ -1,11 +1,10 @@
 //! Rendering hard cases with planted shaders, in this process.
 
-use std::collections::BTreeMap;
 use std::error::Error;
 
 use caustica::config::RenderConfig;
 use caustica::gpu::shader::ShaderSources;
-use caustica::hard_cases::{self, Case, Settings, Truths};
+use caustica::hard_cases::{self, Case, Family, Settings, Truths};
 use caustica::passes::shaders;
 use caustica::render::Renderer;
 
@@ -13,62 +12,70 @@ use super::shader_plants::ShaderPlant;
 
 /// What came of a plant.
 pub(crate) struct Noticed {
-    /// Cases that no longer end as without it.
-    pub(crate) red: Vec<&'static str>,
+    /// Cases that no longer end as without it, in the suite's order.
+    pub(crate) red: Vec<&'static Case>,
     /// Cases that had to fail and did not.
     pub(crate) missing: Vec<&'static str>,
-    /// Cases of the family.
-    pub(crate) of: usize,
+    /// Cases that failed and have nothing to do with it.
+    pub(crate) unexpected: Vec<&'static str>,
+}
+
+impl Noticed {
+    /// Whether it turned red what it should, and nothing else.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.missing.is_empty() && self.unexpected.is_empty()
+    }
+}
+
+/// The cases that plants are held against: all but those about the device, which render nothing of their own, and those that fail
+/// anyway, which notice nothing.
+pub(crate) fn tried() -> impl Iterator<Item = &'static Case> {
+    hard_cases::all().filter(|case| case.family != Family::Machine && case.known_failure.is_none())
 }
 
 /// Runs hard cases, and remembers what does not depend on shaders.
 #[derive(Default)]
 pub(crate) struct Bench {
     truths: Truths,
-    /// How cases end with the shaders as they are.
-    sound: BTreeMap<&'static str, bool>,
+    /// Whether all cases were seen to hold with the shaders as they are.
+    is_sound: bool,
 }
 
 impl Bench {
-    /// Runs the plant's family with it; each case must be as expected without.
+    /// Runs the cases of all families with it; each must be as expected without.
     pub(crate) fn try_plant(&mut self, plant: &ShaderPlant) -> Result<Noticed, Box<dyn Error>> {
-        let cases: Vec<&'static Case> = hard_cases::all()
-            .filter(|case| case.family.name() == plant.family)
-            // What fails anyway notices nothing.
-            .filter(|case| case.known_failure.is_none())
-            .collect();
-        let unknown: Vec<&str> = self.untried(&cases)?;
-        if !unknown.is_empty() {
-            return Err(format!("without any plant these fail: {}", unknown.join(", ")).into());
-        }
+        self.see_all_sound()?;
         let sources = planted(plant)?;
         let mut renderer = Renderer::with_shaders(&RenderConfig::default(), sources)?;
-        let mut red = Vec::new();
-        for case in &cases {
-            if !self.holds(case, &mut renderer) {
-                red.push(case.name);
-            }
-        }
-        let is_missing = |name: &&&str| !red.contains(*name);
+        let red: Vec<&'static Case> = tried()
+            .filter(|case| !self.holds(case, &mut renderer))
+            .collect();
+        let is_missing = |name: &&&str| !red.iter().any(|case| case.name == **name);
         let missing = plant.cases.iter().filter(is_missing).copied().collect();
+        let names = red.iter().map(|case| case.name);
+        let unexpected = names.filter(|name| !plant.cases.contains(name)).collect();
         Ok(Noticed {
             red,
             missing,
-            of: cases.len(),
+            unexpected,
         })
     }
 
-    /// Those of the cases that fail with the shaders as they are.
-    fn untried(&mut self, cases: &[&'static Case]) -> Result<Vec<&'static str>, Box<dyn Error>> {
-        if cases.iter().any(|case| !self.sound.contains_key(case.name)) {
-            let mut renderer = Renderer::new(&RenderConfig::default())?;
-            for &case in cases {
-                let holds = self.holds(case, &mut renderer);
-                self.sound.insert(case.name, holds);
-            }
+    /// Without any plant all cases hold.
+    fn see_all_sound(&mut self) -> Result<(), Box<dyn Error>> {
+        if self.is_sound {
+            return Ok(());
         }
-        let fails = |case: &&&'static Case| !self.sound[case.name];
-        Ok(cases.iter().filter(fails).map(|case| case.name).collect())
+        let mut renderer = Renderer::new(&RenderConfig::default())?;
+        let failing: Vec<&str> = tried()
+            .filter(|case| !self.holds(case, &mut renderer))
+            .map(|case| case.name)
+            .collect();
+        if !failing.is_empty() {
+            return Err(format!("without any plant these fail: {}", failing.join(", ")).into());
+        }
+        self.is_sound = true;
+        Ok(())
     }
 
     fn holds(&mut self, case: &'static Case, renderer: &mut Renderer) -> bool {
