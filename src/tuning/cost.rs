@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::passes::maps::MapLayout;
-use crate::passes::slot;
+use crate::passes::{estimate, slot};
 use crate::plan::Plan;
 use crate::scene::facts::SceneFacts;
 
@@ -59,15 +59,24 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
         }
         "landed" => texels * f64::from(facts.channels()),
         "irradiance" => texels,
-        // A quarter of all the light's passes.
+        // All the light's passes with two fifths of the cells and mostly half the texels along a side, then the places it looks at.
         "coarse_irradiance" => {
-            0.25 * (cells * (5.0 * sums + 2.0 + waves + wet.sqrt()) + texels * sums)
+            0.16 * cells * (5.0 * sums + 2.0 + waves + wet.sqrt())
+                + 0.25 * texels * sums
+                + compared_places(facts)
         }
-        "estimate" => texels,
+        "estimate" => compared_places(facts),
         "camera_hits" => pixels * (1.0 + waves),
         "camera_irradiance" | "shade" => pixels,
         _ => 0.0,
     }
+}
+
+/// Places at which a frame's estimate of its own error compares maps.
+fn compared_places(facts: &SceneFacts) -> f64 {
+    let compared = estimate::compared(facts, &facts.coarse());
+    let places = compared.iter().map(|map| map.comparison.places);
+    places.map(f64::from).sum()
 }
 
 /// Length of the shadows' edges, in sides of the suns' windows.
