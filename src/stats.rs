@@ -22,7 +22,7 @@ pub struct Stats {
     pub memory: MemoryStats,
     /// One account per light that shines into or under the water.
     pub energy: Vec<EnergyAccount>,
-    /// One entry per sun and object that got its light by planes; absent otherwise.
+    /// One entry per light and object that got its light by planes; absent otherwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planes: Vec<PlaneStats>,
     /// How near the truth it is thought to be; absent unless `quality` asks.

@@ -15,13 +15,13 @@ struct AirLight {
 // Least |cosine| between surface and map axis that is reckoned with: below it a surface shows the axis nothing.
 const LEAST_COSINE: f32 = 1e-6;
 
-// Receivers of all suns, sun by sun.
+// Receivers of all lights, light by light.
 @group(0) @binding(3) var<storage, read> all_receivers: array<Receiver>;
 @group(0) @binding(12) var<storage, read> irradiance: array<f32>;
 @group(0) @binding(16) var<storage, read> visible_position: array<vec4f>;
 @group(0) @binding(17) var<storage, read> visible_normal: array<vec4f>;
 @group(0) @binding(20) var<storage, read_write> visible_irradiance: array<vec4f>; // W/m², w: 1 where the floor's map has no texel
-@group(0) @binding(21) var<uniform> suns: array<AirLight, 64>;
+@group(0) @binding(21) var<uniform> air_lights: array<AirLight, 64>;
 
 fn texel_value(offset: u32, width: u32, texel: vec2u) -> vec3f {
     let at = 3u * (offset + texel.y * width + texel.x);
@@ -81,12 +81,12 @@ fn object_irradiance(first: u32, p: vec3f, normal: vec3f) -> vec3f {
 fn lights_in_air(p: vec3f, normal: vec3f) -> vec3f {
     let from_m = p + normal * 1e-3;
     var sum = vec3f(0.0);
-    for (var i = 0u; i < view.air_sun_count; i++) {
-        var to_light = suns[i].source.xyz;
+    for (var i = 0u; i < view.air_light_count; i++) {
+        var to_light = air_lights[i].source.xyz;
         var reach_m = VERY_FAR_M;
         var per_power = 1.0;
-        if suns[i].source.w == 1.0 {
-            let way = suns[i].source.xyz - from_m;
+        if air_lights[i].source.w == 1.0 {
+            let way = air_lights[i].source.xyz - from_m;
             let length2 = max(dot(way, way), 1e-12);
             reach_m = sqrt(length2);
             to_light = way / reach_m;
@@ -95,7 +95,7 @@ fn lights_in_air(p: vec3f, normal: vec3f) -> vec3f {
         let cosine = dot(normal, to_light);
         if cosine <= 0.0 { continue; }
         let blocker = trace_objects(view.instance_count, from_m, to_light, 0.0, reach_m);
-        if blocker.receiver < 0 { sum += suns[i].power.xyz * (cosine * per_power); }
+        if blocker.receiver < 0 { sum += air_lights[i].power.xyz * (cosine * per_power); }
     }
     return sum;
 }
@@ -116,8 +116,8 @@ fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
             sum += lights_in_air(p, normal);
             for (var c = 0; c < 3; c++) { sum[c] += sky_irradiance(view.sky_radiance[c], 1.0, 0.0, 0.0, 1.0, normal.y, 1.0); }
         } else {
-            let per_sun = 1u + view.instance_count * view.layers;
-            for (var s = 0u; s < view.sun_count; s++) {
+            let per_light = 1u + view.instance_count * view.layers;
+            for (var s = 0u; s < view.light_count; s++) {
                 if receiver == FLOOR {
                     if s > 0u { break; }
                     let r = all_receivers[0];
@@ -125,7 +125,7 @@ fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
                     if any(uv < vec2f(0.0)) || any(uv > vec2f(f32(r.map_width), f32(r.map_height))) { outside = 1.0; }
                     sum += floor_irradiance(r, uv);
                 } else {
-                    sum += object_irradiance(s * per_sun + 1u + u32(receiver - 1) * view.layers, p, normal);
+                    sum += object_irradiance(s * per_light + 1u + u32(receiver - 1) * view.layers, p, normal);
                 }
             }
             for (var c = 0; c < 3; c++) {

@@ -19,8 +19,8 @@ struct View {
     orthographic: u32,
     wave_count: u32,
     instance_count: u32,
-    sun_count: u32,       // suns with maps
-    air_sun_count: u32,   // suns above the horizon
+    light_count: u32,     // lights with maps
+    air_light_count: u32, // suns above the horizon and point lights above the water
     max_height_m: f32,    // |height| the waves can reach
     max_slope: f32,
     ior: f32,

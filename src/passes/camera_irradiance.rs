@@ -31,16 +31,16 @@ pub const PASS: PassDesc = PassDesc {
     steps: |facts, run| {
         let mut steps = pixel_step("camera_irradiance_main", facts, run);
         for step in &mut steps {
-            step.uniforms.push(("suns", suns(facts)));
+            step.uniforms.push(("air_lights", air_lights(facts)));
         }
         steps
     },
 };
 
-fn suns(facts: &SceneFacts) -> Vec<u8> {
+fn air_lights(facts: &SceneFacts) -> Vec<u8> {
     // No more than that pass the facts.
-    let mut suns = [AirLight::default(); MOST_LIGHTS];
-    for (slot, light) in suns.iter_mut().zip(&facts.air_suns) {
+    let mut all = [AirLight::default(); MOST_LIGHTS];
+    for (slot, light) in all.iter_mut().zip(&facts.air_lights) {
         *slot = AirLight {
             source: match light.source {
                 Source::Sun { to_light } => vec4(to_light, 0.0),
@@ -51,5 +51,5 @@ fn suns(facts: &SceneFacts) -> Vec<u8> {
             power: vec4(light.power, 0.0),
         };
     }
-    bytemuck::bytes_of(&suns).to_vec()
+    bytemuck::bytes_of(&all).to_vec()
 }

@@ -10,7 +10,7 @@ use super::slot::{self, Slot};
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "coarse_irradiance",
-    repeat: Repeat::CoarseSun,
+    repeat: Repeat::CoarseLight,
     reads: &[Slot::Comparisons, Slot::Flux, Slot::Energy, Slot::Receivers],
     reads_if_present: &[],
     writes: &[Slot::CoarseIrradiance],
@@ -22,7 +22,7 @@ pub const PASS: PassDesc = PassDesc {
         ))
     },
     steps: |facts, run| {
-        let Run::CoarseSun {
+        let Run::CoarseLight {
             index,
             wide_sums,
             fine,
@@ -45,7 +45,7 @@ pub const PASS: PassDesc = PassDesc {
                 let first_group = piece[0].comparison.first_group;
                 let group_count = estimate::groups_of(piece) - first_group;
                 let coarse_light = CoarseLight {
-                    power: vec4(facts.suns[index].power, 0.0),
+                    power: vec4(facts.lights[index].power, 0.0),
                     first_group,
                     group_count,
                     comparison_count: compared.len() as u32,

@@ -1,20 +1,20 @@
-//! Deposit — lays the beams of a sun on the receivers' maps by exact texel coverage.
+//! Deposit — lays the beams of a light on the receivers' maps by exact texel coverage.
 
 use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::light::light_uniform;
 use super::slot::Slot;
-use super::surface::wanted_for_sun;
+use super::surface::wanted_for_light;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "deposit",
-    repeat: Repeat::Sun,
+    repeat: Repeat::Light,
     reads: &[Slot::Surface, Slot::Beams, Slot::Hits, Slot::Receivers],
     reads_if_present: &[],
     writes: &[Slot::Flux, Slot::Energy, Slot::SplitQueue, Slot::WideQueue],
-    wanted: wanted_for_sun,
+    wanted: wanted_for_light,
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else {
+        let Run::Light { index, wide_sums } = run else {
             return Vec::new();
         };
         let groups = facts.quality.water_cells.div_ceil(8);

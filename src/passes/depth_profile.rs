@@ -12,7 +12,7 @@ pub const TEXELS_PER_GROUP: u32 = 64 * 16;
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "depth_profile",
-    repeat: Repeat::Sun,
+    repeat: Repeat::Light,
     reads: &[Slot::Receivers, Slot::LevelMaps],
     reads_if_present: &[],
     writes: &[Slot::PlaneLists],
@@ -30,7 +30,7 @@ pub const PASS: PassDesc = PassDesc {
         })
     },
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else {
+        let Run::Light { index, wide_sums } = run else {
             return Vec::new();
         };
         let mut steps = Vec::new();

@@ -9,11 +9,11 @@ use crate::scene::placement::LevelBox;
 pub enum Repeat {
     /// Once per level map that is not cached.
     LevelMap,
-    /// Once per sun.
-    Sun,
-    /// Once per sun and only when its light is done again coarsely, to estimate the error.
-    CoarseSun,
-    /// Once, when all suns are done.
+    /// Once per light.
+    Light,
+    /// Once per light and only when its light is done again coarsely, to estimate the error.
+    CoarseLight,
+    /// Once, when all lights are done.
     Frame,
     /// Once per band of the picture.
     Band,
@@ -34,18 +34,18 @@ pub enum Run<'a> {
         /// How many there are.
         triangles: u32,
     },
-    /// Follow a sun.
-    Sun {
+    /// Follow a light.
+    Light {
         /// Which one.
         index: usize,
         /// With 64-bit flux sums, after narrow ones have wrapped.
         wide_sums: bool,
     },
-    /// Take what a sun's coarse light left; the facts are the coarse ones.
-    CoarseSun {
+    /// Take what a light left that was done coarsely; the facts are the coarse ones.
+    CoarseLight {
         /// Which one.
         index: usize,
-        /// As of [`Run::Sun`].
+        /// As of [`Run::Light`].
         wide_sums: bool,
         /// The scene whose maps are compared with.
         fine: &'a SceneFacts,

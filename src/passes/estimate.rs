@@ -4,7 +4,7 @@ use super::desc::{PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::{Comparison, Estimate};
 use super::maps::MapLayout;
 use super::slot::{self, Slot};
-use super::surface::wanted_for_sun;
+use super::surface::wanted_for_light;
 use crate::scene::Receiver;
 use crate::scene::facts::{FloorMap, SceneFacts};
 
@@ -49,7 +49,7 @@ pub(super) fn wanted(facts: &SceneFacts) -> Result<String, String> {
     if !facts.quality.estimate_error {
         return Err("quality.estimate_error is false".to_owned());
     }
-    wanted_for_sun(facts)
+    wanted_for_light(facts)
 }
 
 /// A map that is compared.
@@ -104,8 +104,8 @@ pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<Compared> {
     }
     let (fine, low) = (MapLayout::of(facts), MapLayout::of(coarse));
     let layers = facts.quality.layers;
-    for (index, sun) in facts.suns.iter().enumerate() {
-        for (object, level_box) in sun.boxes.iter().enumerate() {
+    for (index, light) in facts.lights.iter().enumerate() {
+        for (object, level_box) in light.boxes.iter().enumerate() {
             let Some(level_box) = level_box else { continue };
             let side = level_box.key.texels;
             for layer in (0..layers).filter(|layer| is_asked_for(facts, object, *layer)) {

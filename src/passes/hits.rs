@@ -3,15 +3,15 @@
 
 use super::desc::{PassDesc, Repeat};
 use super::slot::Slot;
-use super::surface::{grid_step, wanted_for_sun};
+use super::surface::{grid_step, wanted_for_light};
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "hits",
-    repeat: Repeat::Sun,
+    repeat: Repeat::Light,
     reads: &[Slot::Surface, Slot::Beams, Slot::Receivers],
     reads_if_present: &[Slot::LevelMaps, Slot::Geometry, Slot::Instances],
     writes: &[Slot::Hits],
-    wanted: wanted_for_sun,
+    wanted: wanted_for_light,
     steps: |facts, run| grid_step("hits_main", facts, run),
 };

@@ -1,23 +1,23 @@
-//! Irradiance — turns a sun's flux sums into W/m², and adds them to the floor's map.
+//! Irradiance — turns a light's flux sums into W/m², and adds them to the floor's map.
 
 use super::desc::{PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::{Resolve, vec4};
 use super::light::{light_uniform, receivers};
 use super::maps::MapLayout;
 use super::slot::{self, Slot};
-use super::surface::wanted_for_sun;
+use super::surface::wanted_for_light;
 use crate::scene::Receiver;
 use crate::scene::facts::SceneFacts;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "irradiance",
-    repeat: Repeat::Sun,
+    repeat: Repeat::Light,
     reads: &[Slot::Flux, Slot::Energy, Slot::Receivers],
     reads_if_present: &[],
     writes: &[Slot::Irradiance],
     wanted: |facts| {
-        wanted_for_sun(facts)?;
+        wanted_for_light(facts)?;
         let mut parts = Vec::new();
         if let Some(map) = facts.floor_map {
             parts.push(format!(
@@ -52,7 +52,7 @@ fn object_maps(facts: &SceneFacts) -> Option<String> {
     ))
 }
 
-/// One piece of a sun's flux sums that becomes W/m² in one dispatch.
+/// One piece of a light's flux sums that becomes W/m² in one dispatch.
 struct Piece {
     first_texel: u32,
     texels: u32,
@@ -97,16 +97,16 @@ fn pieces(facts: &SceneFacts, index: usize) -> Vec<Piece> {
     wanted.filter(|piece| piece.texels > 0).collect()
 }
 
-/// One dispatch per piece of a sun's flux sums that is asked for.
+/// One dispatch per piece of a light's flux sums that is asked for.
 fn resolve_steps(facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
-    let Run::Sun { index, wide_sums } = run else {
+    let Run::Light { index, wide_sums } = run else {
         return Vec::new();
     };
     let mut steps = Vec::new();
     for piece in pieces(facts, index) {
         let is_floor = piece.first_texel == 0 && facts.floor_map.is_some();
         let resolve = Resolve {
-            power: vec4(facts.suns[index].power, 0.0),
+            power: vec4(facts.lights[index].power, 0.0),
             first_texel: piece.first_texel,
             texel_count: piece.texels,
             first_output: piece.first_output,

@@ -1,11 +1,11 @@
-//! Landed — sums what lies on a sun's maps, for the energy account; narrow sums that have wrapped show here.
+//! Landed — sums what lies on a light's maps, for the energy account; narrow sums that have wrapped show here.
 
 use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::Span;
 use super::light::light_uniform;
 use super::maps::MapLayout;
 use super::slot::Slot;
-use super::surface::wanted_for_sun;
+use super::surface::wanted_for_light;
 
 /// Texels of a workgroup, as in the shader.
 pub const TEXELS_PER_GROUP: u32 = 64 * 64;
@@ -13,13 +13,13 @@ pub const TEXELS_PER_GROUP: u32 = 64 * 64;
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "landed",
-    repeat: Repeat::Sun,
+    repeat: Repeat::Light,
     reads: &[Slot::Flux],
     reads_if_present: &[],
     writes: &[Slot::Energy],
-    wanted: wanted_for_sun,
+    wanted: wanted_for_light,
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else {
+        let Run::Light { index, wide_sums } = run else {
             return Vec::new();
         };
         let span = Span {

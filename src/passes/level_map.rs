@@ -50,7 +50,7 @@ pub(super) fn wanted_for_objects(facts: &SceneFacts) -> Result<String, String> {
     if wet == 0 {
         return Err("no object is under water".to_owned());
     }
-    super::surface::wanted_for_sun(facts)?;
+    super::surface::wanted_for_light(facts)?;
     let layers = match facts.quality.layers {
         1 => String::new(),
         layers => format!(" in {layers} layers"),

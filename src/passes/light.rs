@@ -10,7 +10,7 @@ use super::gpu_data::{Light, Receiver, vec2, vec4};
 use super::maps::MapLayout;
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::solid_angle::solid_angle;
-use crate::scene::facts::{SceneFacts, SunFacts};
+use crate::scene::facts::{LightFacts, SceneFacts};
 use crate::scene::source::Source;
 use crate::scene::window::Rect;
 
@@ -47,22 +47,22 @@ const LEAST_BEAM_SR: f64 = 1e-20;
 const OCTAHEDRAL_SR: f64 = 1.5 * 5.196_152_422_706_632;
 
 /// Flux that one beam can carry at most from a light of unit power.
-fn largest_beam(facts: &SceneFacts, sun: &SunFacts) -> f64 {
-    let cell = sun.grid.places.size() / f64::from(facts.quality.water_cells);
-    match sun.source {
+fn largest_beam(facts: &SceneFacts, light: &LightFacts) -> f64 {
+    let cell = light.grid.places.size() / f64::from(facts.quality.water_cells);
+    match light.source {
         Source::Sun { to_light } => {
             let sideways = DVec2::new(to_light.x, to_light.z).length();
             0.5 * cell.x * cell.y * (to_light.y + facts.surface.max_slope() * sideways)
         }
         Source::Submerged { .. } => (0.5 * cell.x * cell.y * OCTAHEDRAL_SR).min(TAU),
-        Source::Point { position_m } => lamp_beam(facts, sun, position_m, cell),
+        Source::Point { position_m } => lamp_beam(facts, light, position_m, cell),
     }
 }
 
 /// Most of a light's flux that any water lets through: near the horizon little, and what is summed has to count that finely. 1 of a point
 /// light, and where nothing goes through.
-fn brightest_transmittance(facts: &SceneFacts, sun: &SunFacts) -> f64 {
-    let Source::Sun { to_light } = sun.source else {
+fn brightest_transmittance(facts: &SceneFacts, light: &LightFacts) -> f64 {
+    let Source::Sun { to_light } = light.source else {
         return 1.0;
     };
     let tilt = facts.surface.max_slope().atan();
@@ -73,8 +73,8 @@ fn brightest_transmittance(facts: &SceneFacts, sun: &SunFacts) -> f64 {
 
 /// Largest solid angle of half a cell, sr: its area seen from the light's height and the steepest slope, over the square of its least
 /// distance, and never more than half of all directions.
-fn lamp_beam(facts: &SceneFacts, sun: &SunFacts, position_m: DVec3, cell: DVec2) -> f64 {
-    let grid = &sun.grid;
+fn lamp_beam(facts: &SceneFacts, light: &LightFacts, position_m: DVec3, cell: DVec2) -> f64 {
+    let grid = &light.grid;
     // Per piece of an axis: the largest cell side in it, and its least distance from the light's foot.
     let pieces = |axis: usize| -> Vec<(f64, f64)> {
         let (low, high) = (grid.places.min[axis], grid.places.max[axis]);
@@ -118,22 +118,23 @@ fn lamp_beam(facts: &SceneFacts, sun: &SunFacts, position_m: DVec3, cell: DVec2)
 
 /// The uniform of one light.
 pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u8> {
-    let sun = &facts.suns[index];
+    let light = &facts.lights[index];
     let cells = facts.quality.water_cells;
-    let beam = largest_beam(facts, sun);
-    let (source, kind) = match sun.source {
+    let beam = largest_beam(facts, light);
+    let (source, kind) = match light.source {
         Source::Sun { to_light } => (to_light, 0),
         Source::Point { position_m } => (position_m, 1),
         Source::Submerged { position_m } => (position_m, 2),
     };
-    let (objects_min_m, objects_max_m) = sun.objects_window.map_or(([1.0; 2], [-1.0; 2]), |rect| {
-        (vec2(rect.min), vec2(rect.max))
-    });
-    let light = Light {
+    let (objects_min_m, objects_max_m) =
+        light.objects_window.map_or(([1.0; 2], [-1.0; 2]), |rect| {
+            (vec2(rect.min), vec2(rect.max))
+        });
+    let uniform = Light {
         source: vec4(source, 0.0),
         extinction_per_m: vec4(facts.extinction_per_m, 0.0),
-        window_min: vec2(sun.grid.places.min),
-        cell: vec2(sun.grid.places.size() / f64::from(cells)),
+        window_min: vec2(light.grid.places.min),
+        cell: vec2(light.grid.places.size() / f64::from(cells)),
         cells,
         wave_count: facts.surface.components.len() as u32,
         object_count: facts.objects.len() as u32,
@@ -146,13 +147,13 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
         layers: facts.quality.layers,
         wide_texels: WIDE_TEXELS,
         triangle_scale: (BEAM_ACCOUNT_COUNTS / beam).log2().floor().exp2() as f32,
-        foot_m: vec2(sun.grid.foot_m),
-        bend_per_m2: sun.grid.bend_per_m2 as f32,
+        foot_m: vec2(light.grid.foot_m),
+        bend_per_m2: light.grid.bend_per_m2 as f32,
         kind,
         objects_min_m,
         objects_max_m,
     };
-    bytemuck::bytes_of(&light).to_vec()
+    bytemuck::bytes_of(&uniform).to_vec()
 }
 
 /// Counts per unit flux in the energy account of a light; a power of two, so that scaling is exact.
@@ -163,10 +164,10 @@ pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
     } else {
         1.0
     };
-    let sun = &facts.suns[index];
+    let light = &facts.lights[index];
     let beams = 2.0 * f64::from(facts.quality.water_cells).powi(2);
-    let mut all = largest_beam(facts, sun) * beams;
-    if sun.source.position_m().is_some() {
+    let mut all = largest_beam(facts, light) * beams;
+    if light.source.position_m().is_some() {
         all = all.min(MOST_LAMP_SR);
     }
     let all = all * times;
@@ -178,8 +179,8 @@ pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
 /// Wide sums take the largest beam at 2⁴⁰. Narrow ones take it at 2³⁰ at most and leave room for [`NARROW_HEADROOM`] times the
 /// flux of an evenly lit texel.
 pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
-    let sun = &facts.suns[index];
-    let beam = largest_beam(facts, sun) * brightest_transmittance(facts, sun);
+    let light = &facts.lights[index];
+    let beam = largest_beam(facts, light) * brightest_transmittance(facts, light);
     if wide_sums {
         return (WIDE_BEAM_COUNTS / beam).log2().floor().exp2();
     }
@@ -200,8 +201,8 @@ struct TexelFlux {
 
 /// That of each map that is asked for.
 fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelFlux> {
-    let sun = &facts.suns[index];
-    let transmittance = brightest_transmittance(facts, sun);
+    let light = &facts.lights[index];
+    let transmittance = brightest_transmittance(facts, light);
     let even = |flux: f64| TexelFlux {
         brightest: flux,
         mean: flux,
@@ -209,9 +210,9 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
     let floor = facts.floor_map.map(move |map| {
         let texels = f64::from(map.width) * f64::from(map.height);
         let area_m2 = map.rect.size().x * map.rect.size().y / texels;
-        match (sun.source, &facts.floor) {
+        match (light.source, &facts.floor) {
             (Source::Sun { to_light }, _) => even(transmittance * to_light.y * area_m2),
-            (_, Some(floor)) => lamp_on_floor(sun, &map.rect, floor.y_m, facts.ior, texels),
+            (_, Some(floor)) => lamp_on_floor(light, &map.rect, floor.y_m, facts.ior, texels),
             (_, None) => even(area_m2),
         }
     });
@@ -220,15 +221,15 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
         let layers = facts.quality.layers;
         (0..layers).any(|layer| maps.holds(object, layer))
     };
-    let objects = sun.boxes.iter().zip(&facts.objects).enumerate();
+    let objects = light.boxes.iter().zip(&facts.objects).enumerate();
     let objects = objects.filter(move |(number, _)| is_asked(*number));
     let objects = objects.filter_map(move |(_, (level_box, object))| {
         let area_m2 = 1.0 / level_box.as_ref()?.density_per_flux;
-        let Some(position_m) = sun.source.position_m() else {
+        let Some(position_m) = light.source.position_m() else {
             return Some(even(transmittance * area_m2));
         };
         let middle_m = object.wet_middle();
-        let rise_m = sun.source.seeming_height_m(middle_m.y, facts.ior);
+        let rise_m = light.source.seeming_height_m(middle_m.y, facts.ior);
         let way_m = (middle_m - position_m).with_y(rise_m).length();
         let radius_m = 0.5 * (object.max - object.min).length();
         let near_m = (way_m - radius_m).max(0.1 * radius_m).max(1e-6);
@@ -242,19 +243,19 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
 }
 
 /// A point light on the floor's map.
-fn lamp_on_floor(sun: &SunFacts, rect: &Rect, y_m: f64, ior: f64, texels: f64) -> TexelFlux {
-    let foot_m = sun
+fn lamp_on_floor(light: &LightFacts, rect: &Rect, y_m: f64, ior: f64, texels: f64) -> TexelFlux {
+    let foot_m = light
         .source
         .position_m()
         .map_or(DVec2::ZERO, |p| DVec2::new(p.x, p.z));
-    let height_m = sun.source.seeming_height_m(y_m, ior).max(1e-6);
+    let height_m = light.source.seeming_height_m(y_m, ior).max(1e-6);
     let (low, high) = (rect.min - foot_m, rect.max - foot_m);
     let corner = DVec3::new(low.x, -height_m, low.y);
     let (along_x, along_z) = (DVec3::X * (high.x - low.x), DVec3::Z * (high.y - low.y));
     let whole = (solid_angle(corner, along_x, along_x + along_z)
         + solid_angle(corner, along_x + along_z, along_z))
     .abs()
-    .min(entering_sr(sun));
+    .min(entering_sr(light));
     let aside_m = low.max(-high).max(DVec2::ZERO).length();
     let area_m2 = (high.x - low.x) * (high.y - low.y) / texels;
     let distance_m = height_m.hypot(aside_m);
@@ -266,12 +267,12 @@ fn lamp_on_floor(sun: &SunFacts, rect: &Rect, y_m: f64, ior: f64, texels: f64) -
 }
 
 /// Solid angle of the water's window at rest, seen from a point light above it; of all directions for one under it.
-fn entering_sr(sun: &SunFacts) -> f64 {
-    let Source::Point { position_m } = sun.source else {
+fn entering_sr(light: &LightFacts) -> f64 {
+    let Source::Point { position_m } = light.source else {
         return 2.0 * TAU;
     };
-    let low = sun.window.min - DVec2::new(position_m.x, position_m.z);
-    let size = sun.window.size();
+    let low = light.window.min - DVec2::new(position_m.x, position_m.z);
+    let size = light.window.size();
     let corner = DVec3::new(low.x, -position_m.y.max(1e-9), low.y);
     let (along_x, along_z) = (DVec3::X * size.x, DVec3::Z * size.y);
     let near = solid_angle(corner, along_x, along_x + along_z);
@@ -300,15 +301,15 @@ pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     } else {
         1.0
     };
-    let sun = &facts.suns[index];
+    let light = &facts.lights[index];
     let beams = 2.0 * f64::from(facts.quality.water_cells).powi(2);
     // To a near light most beams are far smaller than the largest.
-    if matches!(sun.source, Source::Point { .. })
-        && scale * entering_sr(sun) / beams < MEAN_BEAM_COUNTS
+    if matches!(light.source, Source::Point { .. })
+        && scale * entering_sr(light) / beams < MEAN_BEAM_COUNTS
     {
         return true;
     }
-    let beam = largest_beam(facts, sun) * brightest_transmittance(facts, sun);
+    let beam = largest_beam(facts, light) * brightest_transmittance(facts, light);
     scale * beam < FINE_COUNTS.max(PART_COUNTS * parts)
         || scale * coarsest < FINE_COUNTS
         || scale * finest < FINEST_MAP_COUNTS
@@ -329,7 +330,7 @@ pub fn receivers(
     let mut all = vec![floor_receiver(facts)];
     let maps = MapLayout::of(facts);
     let layers = facts.quality.layers;
-    for (object, level_box) in facts.suns[index].boxes.iter().enumerate() {
+    for (object, level_box) in facts.lights[index].boxes.iter().enumerate() {
         let Some(level_box) = level_box else {
             // Without texels, but in its place: `density_at` in the shaders looks receivers up by where their maps begin.
             all.extend((0..layers).map(|layer| Receiver {

@@ -1,7 +1,7 @@
 //! Where the irradiance maps of the receivers lie in the arrays that hold them all.
 //!
-//! In the flux sums of a sun: the floor's map, then for each wet object its layers, nearest first. In the irradiance array: the
-//! floor's map, to which every sun adds, then the objects' maps of the first sun, of the second, and so on. Maps that nobody asks
+//! In the flux sums of a light: the floor's map, then for each wet object its layers, nearest first. In the irradiance array: the
+//! floor's map, to which every light adds, then the objects' maps of the first light, of the second, and so on. Maps that nobody asks
 //! for have no place: what lands there goes straight into the account.
 
 use std::ops::Range;
@@ -29,9 +29,9 @@ struct ObjectMaps {
 pub struct MapLayout {
     floor: u64,
     objects: Vec<ObjectMaps>,
-    /// Texels of all objects under one sun.
-    per_sun: u64,
-    suns: u64,
+    /// Texels of all objects under one light.
+    per_light: u64,
+    lights: u64,
 }
 
 impl MapLayout {
@@ -63,12 +63,12 @@ impl MapLayout {
         Self {
             floor,
             objects,
-            per_sun: end - floor,
-            suns: facts.suns.len() as u64,
+            per_light: end - floor,
+            lights: facts.lights.len() as u64,
         }
     }
 
-    /// Texels, behind the flux sums of a sun, of the caustics map of one plane: as many as the largest object's map has.
+    /// Texels, behind the flux sums of a light, of the caustics map of one plane: as many as the largest object's map has.
     pub fn scratch_texels(&self) -> u64 {
         self.objects
             .iter()
@@ -82,19 +82,19 @@ impl MapLayout {
         narrow(self.flux_texels())
     }
 
-    /// Texels of the flux sums of one sun.
+    /// Texels of the flux sums of one light.
     pub fn flux_texels(&self) -> u64 {
-        self.floor + self.per_sun
+        self.floor + self.per_light
     }
 
-    /// Texels of all objects' maps of one sun.
+    /// Texels of all objects' maps of one light.
     pub fn object_texels(&self) -> u64 {
-        self.per_sun
+        self.per_light
     }
 
     /// Texels of all irradiance maps.
     pub fn irradiance_texels(&self) -> u64 {
-        self.floor + self.per_sun * self.suns
+        self.floor + self.per_light * self.lights
     }
 
     /// Whether a layer of an object is asked for.
@@ -107,10 +107,12 @@ impl MapLayout {
         self.place(object, layer).map_or(NOWHERE, narrow)
     }
 
-    /// First texel of a layer of an object under sun number `sun` in the irradiance array; [`NOWHERE`] for one that nobody asks for.
-    pub fn irradiance_of(&self, sun: usize, object: usize, layer: u32) -> u32 {
+    /// First texel of a layer of an object under light number `light` in the irradiance array; [`NOWHERE`] for one that nobody asks for.
+    pub fn irradiance_of(&self, light: usize, object: usize, layer: u32) -> u32 {
         let place = self.place(object, layer);
-        place.map_or(NOWHERE, |first| narrow(first + sun as u64 * self.per_sun))
+        place.map_or(NOWHERE, |first| {
+            narrow(first + light as u64 * self.per_light)
+        })
     }
 
     fn place(&self, object: usize, layer: u32) -> Option<u64> {

@@ -11,9 +11,9 @@ use crate::scene::facts::SceneFacts;
 /// Word of the beam queue where the dispatch over beams with wide footprints lies.
 pub(super) const WIDE_DISPATCH: u32 = 4;
 
-/// The wet objects of a sun, with the texels along a side of their maps.
-pub(super) fn objects_of(facts: &SceneFacts, sun: usize) -> Vec<(usize, u32)> {
-    let boxes = facts.suns[sun].boxes.iter().enumerate();
+/// The wet objects of a light, with the texels along a side of their maps.
+pub(super) fn objects_of(facts: &SceneFacts, light: usize) -> Vec<(usize, u32)> {
+    let boxes = facts.lights[light].boxes.iter().enumerate();
     boxes
         .filter_map(|(object, level_box)| Some((object, level_box.as_ref()?.key.texels)))
         .collect()
@@ -36,10 +36,10 @@ pub(super) fn planes_uniform(facts: &SceneFacts, object: usize, plane: u32) -> V
     bytemuck::bytes_of(&uniform).to_vec()
 }
 
-/// One dispatch for an object under a sun.
+/// One dispatch for an object under a light.
 pub(super) fn plane_step(
     facts: &SceneFacts,
-    (sun, wide_sums): (usize, bool),
+    (light, wide_sums): (usize, bool),
     (object, plane): (usize, u32),
     entry: &'static str,
     work: Work,
@@ -48,7 +48,7 @@ pub(super) fn plane_step(
         entry,
         work,
         uniforms: vec![
-            ("light", light_uniform(facts, sun, wide_sums)),
+            ("light", light_uniform(facts, light, wide_sums)),
             ("planes", planes_uniform(facts, object, plane)),
         ],
     }
@@ -57,14 +57,14 @@ pub(super) fn plane_step(
 /// Queues the beams that may reach an object, and shares the dispatches out over them (`share_out` is the pass's own entry point).
 pub(super) fn cull_steps(
     facts: &SceneFacts,
-    sun: (usize, bool),
+    light: (usize, bool),
     object: usize,
     share_out: &'static str,
 ) -> [Step; 3] {
     let tiles = facts.quality.water_cells.div_ceil(8);
     let step = |entry, groups| {
         let work = Work::Compute(Groups::Direct(groups));
-        plane_step(facts, sun, (object, 0), entry, work)
+        plane_step(facts, light, (object, 0), entry, work)
     };
     [
         step("cull_reset", [1, 1, 1]),
@@ -76,11 +76,11 @@ pub(super) fn cull_steps(
 /// The dispatch over the queue's beams with narrow footprints, and the one over those with wide ones.
 pub(super) fn over_queue(
     facts: &SceneFacts,
-    sun: (usize, bool),
+    light: (usize, bool),
     place: (usize, u32),
     [narrow, wide]: [&'static str; 2],
 ) -> [Step; 2] {
-    let step = |entry, groups| plane_step(facts, sun, place, entry, Work::Compute(groups));
+    let step = |entry, groups| plane_step(facts, light, place, entry, Work::Compute(groups));
     [
         step(narrow, Groups::Queue(Slot::BeamQueue)),
         step(wide, Groups::QueueAt(Slot::BeamQueue, WIDE_DISPATCH)),

@@ -8,7 +8,7 @@ use super::slot::Slot;
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "planes",
-    repeat: Repeat::Sun,
+    repeat: Repeat::Light,
     reads: &[
         Slot::Surface,
         Slot::Beams,
@@ -26,15 +26,15 @@ pub const PASS: PassDesc = PassDesc {
         Ok(format!("{objects}, cut by {} planes", facts.quality.planes))
     },
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else {
+        let Run::Light { index, wide_sums } = run else {
             return Vec::new();
         };
-        let sun = (index, wide_sums);
+        let light = (index, wide_sums);
         objects_of(facts, index)
             .into_iter()
             .flat_map(|(object, _)| {
-                let cull = cull_steps(facts, sun, object, "planes_share_out");
-                let deposit = over_queue(facts, sun, (object, 0), ["planes_main", "planes_wide"]);
+                let cull = cull_steps(facts, light, object, "planes_share_out");
+                let deposit = over_queue(facts, light, (object, 0), ["planes_main", "planes_wide"]);
                 cull.into_iter().chain(deposit)
             })
             .collect()

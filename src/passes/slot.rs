@@ -43,8 +43,8 @@ pub const BAND_BYTES: u64 = 32 << 20;
 pub enum Lifetime {
     /// Filled by the host before the frame.
     Upload,
-    /// Used anew for every sun.
-    Sun,
+    /// Used anew for every light.
+    Light,
     /// Until the end of the frame.
     Frame,
     /// Used anew for every band of the picture.
@@ -62,9 +62,9 @@ pub enum Slot {
     Geometry,
     /// Placed meshes.
     Instances,
-    /// Receivers of the sun at work.
+    /// Receivers of the light at work.
     Receivers,
-    /// Receivers of all suns.
+    /// Receivers of all lights.
     AllReceivers,
     /// Level maps.
     LevelMaps,
@@ -180,12 +180,12 @@ impl Slot {
             ),
             Self::Receivers => (
                 "receivers",
-                "map of each receiver for the sun at work",
+                "map of each receiver for the light at work",
                 Lifetime::Upload,
             ),
             Self::AllReceivers => (
                 "all_receivers",
-                "map of each receiver for each sun",
+                "map of each receiver for each light",
                 Lifetime::Upload,
             ),
             Self::LevelMaps => (
@@ -196,62 +196,62 @@ impl Slot {
             Self::Surface => (
                 "surface",
                 "height m and slope per water vertex",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::Beams => (
                 "beams",
                 "refracted direction and transmittance per water vertex",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::Hits => (
                 "hits",
                 "map coordinates texels, path m, receiver per water vertex",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::SplitQueue => (
                 "split_queue",
                 "beams that straddle receivers, and two levels of their parts",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::WideQueue => (
                 "wide_queue",
                 "slices of footprints of many texels",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::BeamQueue => (
                 "beam_queue",
                 "beams that may reach the object at work",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::PlaneLists => (
                 "plane_lists",
                 "planes in use, texels near each plane and planes near each tile, per object",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::PlaneCounts => (
                 "plane_counts",
                 "beams kept, planes used and pieces of the box per object",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::Slices => (
                 "slices",
                 "textures: a colour image per plane of the object at work, and a depth",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::Combined => (
                 "combined",
                 "colour of the first slice per texel of the object at work",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::Flux => (
                 "flux",
                 "64-bit fixed-point flux per texel and channel",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::Energy => (
                 "energy",
                 "64-bit fixed-point flux per term of the account",
-                Lifetime::Sun,
+                Lifetime::Light,
             ),
             Self::Irradiance => ("irradiance", "linear RGB per texel, W/m²", Lifetime::Frame),
             Self::Comparisons => (
@@ -368,14 +368,14 @@ impl Slot {
                 size_of::<super::gpu_data::Instance>() as u64 * facts.objects.len().max(1) as u64
             }
             Self::Receivers => receiver_bytes(facts),
-            Self::AllReceivers => receiver_bytes(facts) * facts.suns.len().max(1) as u64,
+            Self::AllReceivers => receiver_bytes(facts) * facts.lights.len().max(1) as u64,
             Self::Geometry => facts.geometry_bytes,
             Self::LevelMaps => 0,
         }
     }
 }
 
-/// Bytes of a sun's flux sums, and of what volumetric light adds up behind them.
+/// Bytes of a light's flux sums, and of what volumetric light adds up behind them.
 pub fn flux_bytes(facts: &SceneFacts, wide_sums: bool) -> u64 {
     let maps = MapLayout::of(facts);
     let scratch = if facts.quality.is_volumetric() {
@@ -405,7 +405,7 @@ pub fn readback_bytes(facts: &SceneFacts) -> u64 {
         Some(camera) => {
             16 * u64::from(camera.width) * u64::from(band_rows(camera.width, camera.height))
         }
-        None if facts.suns.is_empty() => 0,
+        None if facts.lights.is_empty() => 0,
         None => 12 * MapLayout::of(facts).irradiance_texels(),
     }
 }
@@ -435,7 +435,7 @@ pub fn split_wides(facts: &SceneFacts) -> u32 {
     (2 * cells * cells).saturating_add(split_parts(facts))
 }
 
-/// Bytes of the receivers of one sun.
+/// Bytes of the receivers of one light.
 fn receiver_bytes(facts: &SceneFacts) -> u64 {
     let receivers = 1 + facts.objects.len() as u64 * u64::from(facts.quality.layers);
     size_of::<super::gpu_data::Receiver>() as u64 * receivers

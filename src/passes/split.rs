@@ -5,13 +5,13 @@ use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::Split;
 use super::light::light_uniform;
 use super::slot::{self, Slot};
-use super::surface::wanted_for_sun;
+use super::surface::wanted_for_light;
 use crate::scene::facts::SceneFacts;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "split",
-    repeat: Repeat::Sun,
+    repeat: Repeat::Light,
     reads: &[
         Slot::SplitQueue,
         Slot::Waves,
@@ -23,7 +23,7 @@ pub const PASS: PassDesc = PassDesc {
     reads_if_present: &[],
     writes: &[Slot::Flux, Slot::Energy, Slot::SplitQueue],
     wanted: |facts| {
-        wanted_for_sun(facts)?;
+        wanted_for_light(facts)?;
         let wet = facts.wet_objects().count();
         if wet == 0 {
             return Err("no object is under water: every beam ends on the floor".to_owned());
@@ -34,7 +34,7 @@ pub const PASS: PassDesc = PassDesc {
         ))
     },
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else {
+        let Run::Light { index, wide_sums } = run else {
             return Vec::new();
         };
         let light = light_uniform(facts, index, wide_sums);

@@ -9,31 +9,33 @@ use crate::scene::source::Source;
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "surface",
-    repeat: Repeat::Sun,
+    repeat: Repeat::Light,
     reads: &[Slot::Waves],
     reads_if_present: &[],
     writes: &[Slot::Surface],
-    wanted: wanted_for_sun,
+    wanted: wanted_for_light,
     steps: |facts, run| match run {
         // Its rays start at the light and pass no surface.
-        Run::Sun { index, .. } if matches!(facts.suns[index].source, Source::Submerged { .. }) => {
+        Run::Light { index, .. }
+            if matches!(facts.lights[index].source, Source::Submerged { .. }) =>
+        {
             Vec::new()
         }
         _ => grid_step("surface_main", facts, run),
     },
 };
 
-/// Passes that follow a sun are in when there is one and something under water waits for it.
-pub(super) fn wanted_for_sun(facts: &SceneFacts) -> Result<String, String> {
+/// Passes that follow a light are in when there is one and something under water waits for it.
+pub(super) fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
     if !facts.has_receiver() {
         return Err("nothing under water is to be lit".to_owned());
     }
-    if facts.suns.is_empty() {
+    if facts.lights.is_empty() {
         return Err("no sun above the horizon shines into the water".to_owned());
     }
     let waves = facts.surface.components.len();
     let count = |wanted: fn(&Source) -> bool, name: &str, names: &str| {
-        let count = facts.suns.iter().filter(|s| wanted(&s.source)).count();
+        let count = facts.lights.iter().filter(|s| wanted(&s.source)).count();
         match count {
             0 => None,
             1 => Some(format!("1 {name}")),
@@ -81,7 +83,7 @@ pub(super) fn wanted_for_sun(facts: &SceneFacts) -> Result<String, String> {
 
 /// One invocation per grid vertex.
 pub(super) fn grid_step(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
-    let Run::Sun { index, wide_sums } = run else {
+    let Run::Light { index, wide_sums } = run else {
         return Vec::new();
     };
     let side = facts.quality.water_cells + 1;

@@ -12,7 +12,7 @@ use crate::scene::placement::LevelBox;
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "volumetric",
-    repeat: Repeat::Sun,
+    repeat: Repeat::Light,
     reads: &[
         Slot::Surface,
         Slot::Beams,
@@ -39,32 +39,32 @@ pub const PASS: PassDesc = PassDesc {
         ))
     },
     steps: |facts, run| {
-        let Run::Sun { index, wide_sums } = run else {
+        let Run::Light { index, wide_sums } = run else {
             return Vec::new();
         };
-        let sun = (index, wide_sums);
+        let light = (index, wide_sums);
         let mut steps = Vec::new();
         for (object, texels) in objects_of(facts, index) {
-            let Some(level_box) = &facts.suns[index].boxes[object] else {
+            let Some(level_box) = &facts.lights[index].boxes[object] else {
                 continue;
             };
             let planes = 0..facts.planes_of(object);
             steps.extend(
                 planes
                     .clone()
-                    .map(|plane| slice_step(facts, sun, level_box, object, plane)),
+                    .map(|plane| slice_step(facts, light, level_box, object, plane)),
             );
-            steps.extend(cull_steps(facts, sun, object, "volumetric_share_out"));
+            steps.extend(cull_steps(facts, light, object, "volumetric_share_out"));
             let tiles = texels.div_ceil(8);
             for plane in planes {
                 let place = (object, plane);
                 let entries = ["volumetric_deposit", "volumetric_wide"];
-                steps.extend(over_queue(facts, sun, place, entries));
+                steps.extend(over_queue(facts, light, place, entries));
                 let work = Work::OverSlice {
                     groups: [tiles, tiles, 1],
                     plane,
                 };
-                steps.push(plane_step(facts, sun, place, "volumetric_combine", work));
+                steps.push(plane_step(facts, light, place, "volumetric_combine", work));
             }
         }
         steps
@@ -74,7 +74,7 @@ pub const PASS: PassDesc = PassDesc {
 /// Draws what lies between the middles of a plane and its neighbours.
 fn slice_step(
     facts: &SceneFacts,
-    sun: (usize, bool),
+    light: (usize, bool),
     level_box: &LevelBox,
     object: usize,
     plane: u32,
@@ -90,7 +90,7 @@ fn slice_step(
         texels: level_box.key.texels,
         vertices: 3 * facts.objects[object].triangles,
     };
-    let mut step = plane_step(facts, sun, (object, plane), "slice_vertex", work);
+    let mut step = plane_step(facts, light, (object, plane), "slice_vertex", work);
     let view = bytemuck::bytes_of(&view).to_vec();
     step.uniforms.push(("level_map_view", view));
     step

@@ -115,7 +115,7 @@ impl Cached for WarmCache {
 /// The slots that hold what the output asks for.
 pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
     let estimate =
-        (facts.quality.estimate_error && !facts.suns.is_empty()).then_some(Slot::Differences);
+        (facts.quality.estimate_error && !facts.lights.is_empty()).then_some(Slot::Differences);
     match facts.wanted {
         Wanted::LevelMaps => return BTreeSet::from([Slot::LevelMaps]),
         Wanted::Estimate => return estimate.into_iter().collect(),
@@ -141,13 +141,13 @@ pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
         .collect()
 }
 
-/// The distinct level maps that a scene needs, in the order of suns and objects.
+/// The distinct level maps that a scene needs, in the order of lights and objects.
 pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
     let mut seen = BTreeSet::new();
     facts
-        .suns
+        .lights
         .iter()
-        .flat_map(|sun| sun.boxes.iter().flatten())
+        .flat_map(|light| light.boxes.iter().flatten())
         .map(|level_box| &level_box.key)
         .filter(|key| seen.insert(*key))
         .collect()
@@ -265,7 +265,9 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
 fn runs(repeat: Repeat, facts: &SceneFacts, missing: usize) -> u32 {
     match repeat {
         Repeat::LevelMap => u32::try_from(missing).unwrap_or(u32::MAX),
-        Repeat::Sun | Repeat::CoarseSun => u32::try_from(facts.suns.len()).unwrap_or(u32::MAX),
+        Repeat::Light | Repeat::CoarseLight => {
+            u32::try_from(facts.lights.len()).unwrap_or(u32::MAX)
+        }
         Repeat::Frame => 1,
         Repeat::Band => facts
             .camera

@@ -162,8 +162,8 @@ impl Renderer {
                 bytemuck::cast_slice(&geometry.instances(facts)),
             );
         }
-        let all: Vec<Receiver> = (0..facts.suns.len())
-            .flat_map(|sun| self.receivers(facts, sun))
+        let all: Vec<Receiver> = (0..facts.lights.len())
+            .flat_map(|light| self.receivers(facts, light))
             .collect();
         write(Slot::AllReceivers, bytemuck::cast_slice(&all));
         if buffers.by_name.contains_key(slot_name(Slot::Comparisons)) {
@@ -173,9 +173,9 @@ impl Renderer {
         }
     }
 
-    pub(super) fn receivers(&self, facts: &SceneFacts, sun: usize) -> Vec<Receiver> {
-        light::receivers(facts, sun, |object| {
-            let key = facts.suns[sun].boxes[object].as_ref().map(|b| &b.key);
+    pub(super) fn receivers(&self, facts: &SceneFacts, light: usize) -> Vec<Receiver> {
+        light::receivers(facts, light, |object| {
+            let key = facts.lights[light].boxes[object].as_ref().map(|b| &b.key);
             let offset = key
                 .and_then(|key| self.level_maps.offset(key))
                 .unwrap_or_default();
@@ -277,8 +277,8 @@ impl Renderer {
     }
 }
 
-/// Empties queues, the account, and so many bytes of the flux sums before a sun's turn.
-pub(super) fn clear_for_sun(
+/// Empties queues, the account, and so many bytes of the flux sums before a light's turn.
+pub(super) fn clear_for_light(
     encoder: &mut wgpu::CommandEncoder,
     buffers: &FrameBuffers,
     flux_bytes: u64,

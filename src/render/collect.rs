@@ -18,22 +18,22 @@ use crate::stats::{EnergyAccount, PlaneStats, Warning};
 /// Closure up to which planes are said to conserve energy: that of hits.
 const PLANES_CLOSE: f64 = 1e-5;
 
-/// The accounts of all suns from their raw sums, and what is worth a warning.
+/// The accounts of all lights from their raw sums, and what is worth a warning.
 pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Vec<Warning>) {
     let mut accounts = Vec::new();
     let mut warnings = Vec::new();
-    for (index, (sun, terms)) in facts
-        .suns
+    for (index, (light, terms)) in facts
+        .lights
         .iter()
         .zip(raw.chunks_exact(ENERGY_TERMS as usize))
         .enumerate()
     {
         let per_count = 1.0 / light::energy_scale(facts, index);
-        let grey = |t: usize| sun.power.map(|p| terms[t] as f64 * per_count * p);
+        let grey = |t: usize| light.power.map(|p| terms[t] as f64 * per_count * p);
         let spectral = |t: usize| -> [f64; 3] {
             std::array::from_fn(|c| {
                 let channel = if facts.channels() == 1 { 0 } else { c };
-                terms[t + channel] as f64 * per_count * sun.power[c]
+                terms[t + channel] as f64 * per_count * light.power[c]
             })
         };
         let lost = spectral(term::EXTINGUISHED);
@@ -46,7 +46,7 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
             }
         });
         let mut account = EnergyAccount {
-            light: sun.light,
+            light: light.index,
             emitted_w: grey(term::EMITTED),
             landed_w: spectral(term::LANDED),
             absorbed_w: std::array::from_fn(|c| lost[c] * absorbed_share[c]),
@@ -61,7 +61,7 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
         if terms[term::TORN_COUNT] > 0 {
             warnings.push(Warning {
                 flux_w: Some(grey(term::TORN)),
-                ..Warning::new("beams_torn", torn_message(sun.light, terms))
+                ..Warning::new("beams_torn", torn_message(light.index, terms))
             });
         }
         accounts.push(account);
@@ -80,17 +80,17 @@ pub(super) fn tell_scattered(warnings: &mut [Warning], energy: &[EnergyAccount])
     }
 }
 
-/// What placing light by planes took, from the counts of each sun and object.
+/// What placing light by planes took, from the counts of each light and object.
 pub(super) fn planes(facts: &SceneFacts, counts: &[Vec<[u32; 4]>]) -> Vec<PlaneStats> {
     let cells = facts.quality.water_cells;
     let mut all = Vec::new();
-    for (sun, counts) in facts.suns.iter().zip(counts) {
+    for (light, counts) in facts.lights.iter().zip(counts) {
         for (object, (level_box, &[kept, used, sub_boxes, _])) in
-            sun.boxes.iter().zip(counts).enumerate()
+            light.boxes.iter().zip(counts).enumerate()
         {
             if level_box.is_some() {
                 all.push(PlaneStats {
-                    light: sun.light,
+                    light: light.index,
                     object: object as u32,
                     specified: facts.planes_of(object),
                     used,
@@ -323,9 +323,9 @@ pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
     if let Some(Receiver::Object(index)) = facts.map_receiver {
         let texels = facts.objects[index as usize].map_texels;
         let found = facts
-            .suns
+            .lights
             .first()
-            .and_then(|sun| sun.boxes.get(index as usize))
+            .and_then(|light| light.boxes.get(index as usize))
             .and_then(Option::as_ref);
         return MapPlace {
             width: texels,

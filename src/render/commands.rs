@@ -95,7 +95,7 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         // What has nothing to do with the sums is one kernel for both.
         let sums = pass.reads.iter().chain(pass.writes);
-        let wide_sums = matches!(run, Run::Sun { wide_sums, .. } | Run::CoarseSun { wide_sums, .. } if wide_sums)
+        let wide_sums = matches!(run, Run::Light { wide_sums, .. } | Run::CoarseLight { wide_sums, .. } if wide_sums)
             && sums.into_iter().any(|&slot| slot == Slot::Flux);
         for step in (pass.steps)(facts, run) {
             match step.work {

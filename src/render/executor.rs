@@ -1,11 +1,11 @@
-//! The order of a frame: level maps, then sun by sun, then band by band. What a pass does is all in its description.
+//! The order of a frame: level maps, then light by light, then band by band. What a pass does is all in its description.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
 use tokio_util::sync::CancellationToken;
 
-use super::buffers::{FrameBuffers, clear_for_sun};
+use super::buffers::{FrameBuffers, clear_for_light};
 use super::commands::Recording;
 use super::{RenderError, Renderer, RunResult, collect, geometry, ms_since, slot_name};
 use crate::gpu::readback::Staged;
@@ -19,7 +19,7 @@ use crate::scene::placement::{LevelBox, LevelMapKey};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::{AccuracyStats, TimeStats};
 
-/// Bytes of one sun's energy account.
+/// Bytes of one light's energy account.
 const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
 
 impl Renderer {
@@ -95,13 +95,19 @@ impl Renderer {
         }
         let mut accounts = Vec::new();
         let mut plane_counts: Vec<Vec<[u32; 4]>> = Vec::new();
-        for sun in 0..if of(Repeat::Sun).is_empty() {
+        for light in 0..if of(Repeat::Light).is_empty() {
             0
         } else {
-            facts.suns.len()
+            facts.lights.len()
         } {
             check_cancelled(cancel)?;
-            accounts.extend(self.run_sun(facts, sun, &of(Repeat::Sun), buffers, &mut time_ms)?);
+            accounts.extend(self.run_light(
+                facts,
+                light,
+                &of(Repeat::Light),
+                buffers,
+                &mut time_ms,
+            )?);
             if let Some(buffer) = buffers.by_name.get(slot_name(Slot::PlaneCounts)) {
                 let bytes = Slot::PlaneCounts.bytes(facts);
                 plane_counts.push(readback::read(&self.gpu, buffer, bytes)?);
@@ -112,7 +118,7 @@ impl Renderer {
         let accuracy = if estimate.is_empty() {
             None
         } else {
-            let passes = [of(Repeat::Sun), of(Repeat::CoarseSun), estimate];
+            let passes = [of(Repeat::Light), of(Repeat::CoarseLight), estimate];
             let differences = self.compare(facts, &passes, buffers, cancel, &mut time_ms)?;
             Some(AccuracyStats {
                 estimated_error: collect::estimated_error(facts, &differences),
@@ -153,9 +159,9 @@ impl Renderer {
         Ok(result)
     }
 
-    /// Follows one sun and returns its raw account; with narrow flux sums where those are fine enough, and once more with wide
+    /// Follows one light and returns its raw account; with narrow flux sums where those are fine enough, and once more with wide
     /// ones if they wrapped.
-    fn run_sun(
+    fn run_light(
         &mut self,
         facts: &SceneFacts,
         index: usize,
@@ -172,9 +178,9 @@ impl Renderer {
             .partition(|pass| pass.writes.iter().all(|slot| !slot.is_map()));
         let mut wide_sums = light::needs_wide_sums(facts, index);
         loop {
-            let run = Run::Sun { index, wide_sums };
+            let run = Run::Light { index, wide_sums };
             let started = Recording::start(time_ms);
-            let mut encoder = self.begin_sun(facts, index, wide_sums, buffers);
+            let mut encoder = self.begin_light(facts, index, wide_sums, buffers);
             self.record_all(&mut encoder, &sums, facts, run, buffers, time_ms)?;
             let staged = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
             self.submit(encoder, started, time_ms)?;
@@ -188,7 +194,7 @@ impl Renderer {
             }
             // Only sums that are known to be whole join the maps.
             let started = Recording::start(time_ms);
-            let mut encoder = self.encoder("sun's maps");
+            let mut encoder = self.encoder("light's maps");
             self.record_all(&mut encoder, &maps, facts, run, buffers, time_ms)?;
             self.submit(encoder, started, time_ms)?;
             return Ok(account);
@@ -213,12 +219,12 @@ impl Renderer {
             .copied()
             .filter(|pass| !pass.writes.contains(&Slot::Irradiance))
             .collect();
-        let suns = 0..coarse.suns.len();
-        let mut wide_sums: Vec<bool> = suns
+        let lights = 0..coarse.lights.len();
+        let mut wide_sums: Vec<bool> = lights
             .map(|index| light::needs_wide_sums(&coarse, index))
             .collect();
         loop {
-            let accounts = self.run_coarse_suns(
+            let accounts = self.run_coarse_lights(
                 (&coarse, facts),
                 &wide_sums,
                 (&sums, coarse_light),
@@ -261,8 +267,8 @@ impl Renderer {
         }
     }
 
-    /// Sends all coarse suns to the GPU, and returns their accounts, which are on their way.
-    fn run_coarse_suns(
+    /// Sends all coarse lights to the GPU, and returns their accounts, which are on their way.
+    fn run_coarse_lights(
         &mut self,
         (coarse, fine): (&SceneFacts, &SceneFacts),
         wide_sums: &[bool],
@@ -278,10 +284,10 @@ impl Renderer {
         self.timing.group(Some(group));
         for (index, &wide_sums) in wide_sums.iter().enumerate() {
             check_cancelled(cancel)?;
-            let run = Run::Sun { index, wide_sums };
-            let mut encoder = self.begin_sun(coarse, index, wide_sums, buffers);
+            let run = Run::Light { index, wide_sums };
+            let mut encoder = self.begin_light(coarse, index, wide_sums, buffers);
             self.record_all(&mut encoder, sums, coarse, run, buffers, time_ms)?;
-            let run = Run::CoarseSun {
+            let run = Run::CoarseLight {
                 index,
                 wide_sums,
                 fine,
@@ -303,8 +309,8 @@ impl Renderer {
         Ok(accounts)
     }
 
-    /// Sets the receivers of a sun and begins its commands, with empty queues and its flux sums at zero.
-    fn begin_sun(
+    /// Sets the receivers of a light and begins its commands, with empty queues and its flux sums at zero.
+    fn begin_light(
         &self,
         facts: &SceneFacts,
         index: usize,
@@ -316,8 +322,8 @@ impl Renderer {
             let bytes = bytemuck::cast_slice(&receivers);
             self.gpu.queue.write_buffer(buffer, 0, bytes);
         }
-        let mut encoder = self.encoder("sun");
-        clear_for_sun(&mut encoder, buffers, slot::flux_bytes(facts, wide_sums));
+        let mut encoder = self.encoder("light");
+        clear_for_light(&mut encoder, buffers, slot::flux_bytes(facts, wide_sums));
         encoder
     }
 
@@ -413,7 +419,7 @@ impl Renderer {
             values.copy_from_slice(&all[3 * map.first_texel as usize..][..3 * texels]);
         }
         let mut cosines = None;
-        if let (Some(key), true) = (&map.level_map, !facts.suns.is_empty()) {
+        if let (Some(key), true) = (&map.level_map, !facts.lights.is_empty()) {
             let arena = self.arena.as_ref().zip(self.level_maps.offset(key));
             if let Some((arena, offset)) = arena {
                 cosines = Some(self.read_normals(arena, offset, key, facts.map_layer)?);
@@ -456,9 +462,9 @@ impl Renderer {
         time_ms: &mut TimeStats,
     ) -> Result<(), RenderError> {
         let boxes: BTreeMap<&LevelMapKey, &LevelBox> = facts
-            .suns
+            .lights
             .iter()
-            .flat_map(|sun| sun.boxes.iter().flatten())
+            .flat_map(|light| light.boxes.iter().flatten())
             .map(|level_box| (&level_box.key, level_box))
             .collect();
         for key in missing {
@@ -491,7 +497,7 @@ impl Renderer {
     }
 }
 
-/// Whether the account of a sun says that its narrow sums wrapped.
+/// Whether the account of a light says that its narrow sums wrapped.
 fn has_wrapped(facts: &SceneFacts, index: usize, account: &[u64]) -> bool {
     light::has_wrapped(facts, index, collect::missing_flux(facts, index, account))
 }

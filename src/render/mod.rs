@@ -347,7 +347,7 @@ impl Renderer {
         self.level_maps.stats()
     }
 
-    /// How often since the start a sun was followed again because its narrow flux sums had wrapped.
+    /// How often since the start a light was followed again because its narrow flux sums had wrapped.
     pub fn wide_sum_reruns(&self) -> u64 {
         self.wide_sum_reruns
     }

@@ -48,6 +48,9 @@ impl Renderer {
 
 /// The level map under each sun; the scene has one object.
 fn keys_by_sun(facts: &SceneFacts) -> impl Iterator<Item = &LevelMapKey> {
-    let boxes = facts.suns.iter().flat_map(|sun| sun.boxes.iter().flatten());
+    let boxes = facts
+        .lights
+        .iter()
+        .flat_map(|light| light.boxes.iter().flatten());
     boxes.map(|level_box| &level_box.key)
 }

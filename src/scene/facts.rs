@@ -27,9 +27,9 @@ pub const MOST_LIGHTS: usize = 64;
 
 /// A sun or point light that lights something under water.
 #[derive(Clone, Debug)]
-pub struct SunFacts {
-    /// Index into `lights`.
-    pub light: u32,
+pub struct LightFacts {
+    /// Index into the scene's `lights`.
+    pub index: u32,
     /// Where its light comes from.
     pub source: Source,
     /// Of a sun the irradiance of a plane facing it, W/m²; of a point light its radiant intensity, W/sr.
@@ -45,7 +45,7 @@ pub struct SunFacts {
     pub boxes: Vec<Option<LevelBox>>,
 }
 
-impl SunFacts {
+impl LightFacts {
     /// Side of a square of water in which all of `cells` × `cells` cells are as large as the largest one is, m; 0 of a light under
     /// water, whose rays pass no surface.
     pub fn span_m(&self, cells: u32) -> f64 {
@@ -122,9 +122,9 @@ pub struct SceneFacts {
     /// Extinction c = a + b, 1/m.
     pub extinction_per_m: [f64; 3],
     /// Suns and point lights that light a receiver under water.
-    pub suns: Vec<SunFacts>,
+    pub lights: Vec<LightFacts>,
     /// All suns above the horizon and point lights above the water.
-    pub air_suns: Vec<AirLight>,
+    pub air_lights: Vec<AirLight>,
     /// Sum of the skies, W/(m² sr).
     pub sky_radiance: [f64; 3],
     /// Share of sky light that flat water lets through.
@@ -171,7 +171,7 @@ impl SceneFacts {
         let water = &scene.water;
         let extinction_per_m =
             std::array::from_fn(|c| water.absorption_per_m[c] + water.scattering_per_m[c]);
-        let air_suns = air_lights(&scene.lights, origin_m, &surface)?;
+        let air_lights = air_lights(&scene.lights, origin_m, &surface)?;
         let sky_radiance = sky_sum(&scene.lights);
         let floor = scene.floor.as_ref().map(|f| {
             let centre = DVec2::from(f.center_m) - DVec2::new(origin_m.x, origin_m.z);
@@ -190,9 +190,9 @@ impl SceneFacts {
             ior: water.ior,
             absorption_per_m: water.absorption_per_m,
             extinction_per_m,
-            suns: Vec::new(),
+            lights: Vec::new(),
             white_radiance: white_radiance(scene, origin_m, &surface, sky_radiance),
-            air_suns,
+            air_lights,
             sky_radiance,
             sky_transmittance: fresnel::diffuse_transmittance(water.ior),
             sky_path_factor: sky::sky_path_factor(water.ior),
@@ -213,7 +213,7 @@ impl SceneFacts {
         };
         facts.want_output(&scene.output, scene.camera.as_ref());
         facts.size_maps();
-        facts.find_suns(resolved)?;
+        facts.find_lights(resolved)?;
         facts.collect_warnings(&water.scattering_per_m);
         Ok(facts)
     }
@@ -263,8 +263,8 @@ impl SceneFacts {
     }
 
     fn has_light_through_water(&self) -> bool {
-        let mut suns = self.suns.iter();
-        suns.any(|sun| !matches!(sun.source, Source::Submerged { .. }))
+        let mut lights = self.lights.iter();
+        lights.any(|light| !matches!(light.source, Source::Submerged { .. }))
     }
 
     fn want_output(&mut self, output: &Output, camera: Option<&Camera>) {
@@ -329,7 +329,7 @@ impl SceneFacts {
         }
     }
 
-    fn find_suns(&mut self, resolved: &ResolvedScene) -> Result<(), SceneError> {
+    fn find_lights(&mut self, resolved: &ResolvedScene) -> Result<(), SceneError> {
         if !self.has_receiver() {
             return Ok(());
         }
@@ -387,8 +387,8 @@ impl SceneFacts {
             })?;
             let warnings = source::warnings(self, light_index, &source, power);
             self.warnings.extend(warnings);
-            self.suns.push(SunFacts {
-                light: light_index,
+            self.lights.push(LightFacts {
+                index: light_index,
                 source,
                 power,
                 grid: Grid::over(window, &source),
@@ -411,9 +411,9 @@ impl SceneFacts {
             .map(|c| 1.0 / c.frequency_per_m.length())
             .fold(f64::INFINITY, f64::min);
         let widest_m = self
-            .suns
+            .lights
             .iter()
-            .map(|sun| sun.span_m(self.quality.water_cells))
+            .map(|light| light.span_m(self.quality.water_cells))
             .fold(0.0, f64::max);
         let needed = (widest_m * CELLS_PER_WAVE / shortest_m).ceil();
         if needed > f64::from(self.quality.water_cells) {
@@ -432,7 +432,7 @@ impl SceneFacts {
     /// Says what placement by planes leaves out.
     fn warn_of_planes(&mut self) {
         let wet = self.wet_objects().count();
-        if !self.quality.has_planes() || self.suns.is_empty() {
+        if !self.quality.has_planes() || self.lights.is_empty() {
             return;
         }
         if wet > 1 {
@@ -481,11 +481,11 @@ impl SceneFacts {
         }
         self.warn_of_planes();
         self.warn_of_coarse_cells();
-        for sun in &self.suns {
+        for light in &self.lights {
             let finest_m =
-                sun.grid.places.size().min_element() / f64::from(self.quality.water_cells);
-            if let Source::Point { position_m } = sun.source
-                && sun.window.distance_m(position_m) < CLOSE_CELLS * finest_m
+                light.grid.places.size().min_element() / f64::from(self.quality.water_cells);
+            if let Source::Point { position_m } = light.source
+                && light.window.distance_m(position_m) < CLOSE_CELLS * finest_m
             {
                 let mut warning = Warning::new(
                     "light_close_to_water",
@@ -494,10 +494,10 @@ impl SceneFacts {
                         position_m.y
                     ),
                 );
-                warning.pointer = Some(format!("/lights/{}", sun.light));
+                warning.pointer = Some(format!("/lights/{}", light.index));
                 self.warnings.push(warning);
             }
-            let looks_away = match sun.source {
+            let looks_away = match light.source {
                 Source::Sun { to_light } => {
                     let sideways = DVec2::new(to_light.x, to_light.z);
                     self.surface.max_slope_along(sideways.normalize_or_zero()) * sideways.length()
@@ -505,9 +505,9 @@ impl SceneFacts {
                 }
                 Source::Point { position_m } => {
                     let foot_m = DVec2::new(position_m.x, position_m.z);
-                    let farthest_m = (sun.window.min - foot_m)
+                    let farthest_m = (light.window.min - foot_m)
                         .abs()
-                        .max((sun.window.max - foot_m).abs())
+                        .max((light.window.max - foot_m).abs())
                         .length();
                     self.surface.max_slope() * farthest_m
                         > position_m.y - self.surface.max_height_m()
@@ -519,7 +519,7 @@ impl SceneFacts {
                     "waves_shade_waves",
                     "some wave slopes look away from the light; the shadows of waves on waves are not simulated",
                 );
-                warning.pointer = Some(format!("/lights/{}", sun.light));
+                warning.pointer = Some(format!("/lights/{}", light.index));
                 self.warnings.push(warning);
             }
         }

@@ -79,7 +79,7 @@ fn compared_places(facts: &SceneFacts) -> f64 {
     places.map(f64::from).sum()
 }
 
-/// Length of the shadows' edges, in sides of the suns' windows.
+/// Length of the shadows' edges, in sides of the lights' windows.
 fn edges(facts: &SceneFacts) -> f64 {
     let around_m: f64 = facts
         .wet_objects()
@@ -89,9 +89,9 @@ fn edges(facts: &SceneFacts) -> f64 {
         })
         .sum();
     let side_m = facts
-        .suns
+        .lights
         .iter()
-        .map(|sun| sun.span_m(facts.quality.water_cells))
+        .map(|light| light.span_m(facts.quality.water_cells))
         .fold(0.0, f64::max);
     if side_m > 0.0 { around_m / side_m } else { 0.0 }
 }

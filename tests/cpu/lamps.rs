@@ -87,14 +87,14 @@ fn the_waves_at_the_moment_tell_whether_a_light_is_under_water() {
                                         "phase_deg": 90, "period_s": 2 }] });
         let mut scene = pool([0.0, y, 0.0], water, 8);
         scene["time_s"] = json!(time_s);
-        facts(scene).suns[0].source
+        facts(scene).lights[0].source
     };
     assert!(matches!(at(0.0, 0.02), Source::Submerged { .. }));
     assert!(matches!(at(1.0, 0.02), Source::Point { .. }));
     assert!(matches!(at(1.0, -0.02), Source::Point { .. }));
     assert!(matches!(at(1.0, -0.04), Source::Submerged { .. }));
     // On flat water to the millimetre.
-    let flat = |y: f64| facts(pool([0.0, y, 0.0], json!({}), 8)).suns[0].source;
+    let flat = |y: f64| facts(pool([0.0, y, 0.0], json!({}), 8)).lights[0].source;
     assert!(matches!(flat(0.001), Source::Point { .. }));
     assert!(matches!(flat(0.0), Source::Submerged { .. }));
 }
@@ -157,7 +157,7 @@ fn level_maps_look_along_the_refracted_ray_to_the_objects_middle() {
         let mut scene = pool(lamp, json!({}), 8);
         scene["objects"] = json!([{ "mesh": "box.obj", "translation_m": object, "scale": 0.3 }]);
         let facts = facts(scene);
-        let axis = facts.suns[0].boxes[0].as_ref().unwrap().axis;
+        let axis = facts.lights[0].boxes[0].as_ref().unwrap().axis;
         let middle = (facts.objects[0].min + facts.objects[0].max) * 0.5;
         let lamp_m = DVec3::from(lamp);
         if lamp[1] < 0.0 {
@@ -239,7 +239,7 @@ fn windows_lose_no_light() {
             scene["objects"] =
                 json!([{ "mesh": "box.obj", "translation_m": [0.5, -0.3, 0], "scale": 0.2 }]);
             let facts = facts(scene);
-            let light = &facts.suns[0];
+            let light = &facts.lights[0];
             let Source::Point { position_m } = light.source else {
                 continue; // a crest stands over it
             };
@@ -295,7 +295,7 @@ fn windows_lose_no_light() {
 #[test]
 fn windows_are_no_wider_than_light_needs() {
     let facts = facts(pool([0.0, 0.05, 0.0], json!({}), 8));
-    let size = facts.suns[0].window.size();
+    let size = facts.lights[0].window.size();
     // From r = ρ + 2 m · tan θ_t: what lands 1.42 m aside (the map's corner) has entered 0.06 m aside.
     assert!(size.max_element() < 0.2, "{size}");
 }

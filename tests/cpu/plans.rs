@@ -380,7 +380,7 @@ fn objects_maps_are_finished_in_one_dispatch() {
             .map(|i| json!({ "mesh": "box.obj", "translation_m": place(i), "scale": 0.1 }))
             .collect();
         let facts = SceneFacts::of(&scene_files::scene(scene)).unwrap();
-        let run = passes::desc::Run::Sun {
+        let run = passes::desc::Run::Light {
             index: 0,
             wide_sums: false,
         };
@@ -429,9 +429,9 @@ fn scenes_are_fast_with_narrow_sums_and_extremes_are_exact_with_wide_ones() {
         for cells in ["64", "256", "512", "1024"] {
             let scene = scene_files::load(&name, &[("/quality/water_cells", cells)]);
             let facts = SceneFacts::of(&scene).unwrap();
-            for sun in 0..facts.suns.len() {
+            for sun in 0..facts.lights.len() {
                 let wide = passes::light::needs_wide_sums(&facts, sun);
-                if facts.suns[sun].source.position_m().is_some() {
+                if facts.lights[sun].source.position_m().is_some() {
                     continue; // beams of a lamp differ in size: wide sums are common
                 }
                 // 512² cells are 128 beams for each of the 64² texels of flat.json.

@@ -211,7 +211,7 @@ fn check_cover(pass: &PassDesc, facts: &SceneFacts, run: Run<'_>, tile: [u32; 2]
 #[test]
 fn dispatches_cover_their_work() {
     let facts = facts();
-    let sun = Run::Sun {
+    let sun = Run::Light {
         index: 0,
         wide_sums: false,
     };
@@ -245,7 +245,7 @@ fn floor_texels(facts: &SceneFacts) -> u64 {
 #[test]
 fn sums_over_texels_cover_all_of_them() {
     let facts = facts();
-    let sun = Run::Sun {
+    let sun = Run::Light {
         index: 0,
         wide_sums: false,
     };
@@ -272,7 +272,7 @@ fn sums_over_texels_cover_all_of_them() {
 fn every_entry_point_is_run_by_a_step() {
     let facts = facts();
     let coarse = facts.coarse();
-    let mut level_box = facts.suns[0].boxes[0].clone().unwrap();
+    let mut level_box = facts.lights[0].boxes[0].clone().unwrap();
     level_box.key.layers = 2;
     for pass in passes::ALL {
         let run = match pass.repeat {
@@ -282,11 +282,11 @@ fn every_entry_point_is_run_by_a_step() {
                 first_triangle: 0,
                 triangles: 12,
             },
-            Repeat::Sun => Run::Sun {
+            Repeat::Light => Run::Light {
                 index: 0,
                 wide_sums: false,
             },
-            Repeat::CoarseSun => Run::CoarseSun {
+            Repeat::CoarseLight => Run::CoarseLight {
                 index: 0,
                 wide_sums: false,
                 fine: &facts,
