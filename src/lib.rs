@@ -11,7 +11,7 @@
 //!
 //! 1. [`scene::Scene::from_json`] reads JSON strictly; every complaint has a JSON pointer. [`scene::resolve()`] checks ranges and
 //!    turns mesh ids into [`mesh::Mesh`]es.
-//! 2. [`scene::facts::SceneFacts`] holds the figures that decide what has to be done: which suns reach the water, which
+//! 2. [`scene::facts::SceneFacts`] holds the figures that decide what has to be done: which lights reach the water, which
 //!    rectangle of water lights the receivers, which part of the floor the camera sees. All in coordinates around what is
 //!    looked at, so that f32 is as good far from the origin as near it.
 //! 3. [`plan::plan()`] walks the list [`passes::ALL`] backwards from what is asked for and keeps what is needed, with a

@@ -1,6 +1,6 @@
 //! Plants errors in the project, one at a time, and sees that its tests and hard cases notice each.
 //!
-//! Those in shaders are planted in memory, and the hard cases of all families are rendered with them: a minute each.  Those in Rust are
+//! Those in shaders are planted in memory, and the hard cases of all families are rendered with them: a minute each. Those in Rust are
 //! planted in a copy of the sources, all asleep, and the tests are built there once and run with one plant awake at a time.
 //!
 //! `make mutants` runs all and writes `docs/mutants.md`. With words behind it (`cargo run --release --example mutants -- refract.rs`)

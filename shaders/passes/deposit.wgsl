@@ -129,7 +129,7 @@ fn deposit_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         if is_segment(b.uv[0], b.uv[1], b.uv[2]) {
             if lane == 0u { beside = deposit_segment(target_map, b.uv[0], b.uv[1], b.uv[2], arriving); }
         } else {
-            beside = deposit_wide_area(target_map, b.uv, arriving, lane, groups.y * 64u);
+            beside = deposit_texels(target_map, b.uv, arriving, lane, groups.y * 64u);
         }
         if beside > 0.0 {
             for (var channel = 0u; channel < light.channels; channel++) {

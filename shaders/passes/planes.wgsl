@@ -135,7 +135,7 @@ fn planes_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
         if is_segment(c.uv[0], c.uv[1], c.uv[2]) {
             if lane == 0u { deposit_segment(target_of(accepting), c.uv[0], c.uv[1], c.uv[2], arriving); }
         } else {
-            deposit_wide_area(target_of(accepting), c.uv, arriving, lane, groups.z * 64u);
+            deposit_texels(target_of(accepting), c.uv, arriving, lane, groups.z * 64u);
         }
         if ATTENUATES && taken > 0.0 {
             let lost = taken * b.transmitted * mean_extinction(c.t);

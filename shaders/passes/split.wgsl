@@ -160,7 +160,7 @@ fn push_wide(beam_index: u32, word: u32) -> bool {
     return true;
 }
 
-// Lays a part of a beam that `path` and `level` lead to. There is one place that deposits, see `deposit_area`.
+// Lays a part of a beam that `path` and `level` lead to. There is one place that deposits, see `deposit_row`.
 fn deposit_part(b: Beam, is_torn: bool, beam_index: u32, path: u32, level: u32) -> Losses {
     var losses = NO_LOSSES;
     let pieces = select(1, 3, is_torn);
@@ -283,7 +283,7 @@ fn split_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
         if is_segment(piece.uv[0], piece.uv[1], piece.uv[2]) {
             if lane == 0u { beside = deposit_segment(target_map, piece.uv[0], piece.uv[1], piece.uv[2], arriving); }
         } else {
-            beside = deposit_wide_area(target_map, piece.uv, arriving, lane, groups.y * 64u);
+            beside = deposit_texels(target_map, piece.uv, arriving, lane, groups.y * 64u);
         }
         if beside > 0.0 {
             for (var channel = 0u; channel < light.channels; channel++) {

@@ -92,7 +92,7 @@ fn volumetric_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups)
         if is_segment(c.uv[0], c.uv[1], c.uv[2]) {
             if lane == 0u { deposit_segment(caustics_map(r), c.uv[0], c.uv[1], c.uv[2], arriving); }
         } else {
-            deposit_wide_area(caustics_map(r), c.uv, arriving, lane, groups.z * 64u);
+            deposit_texels(caustics_map(r), c.uv, arriving, lane, groups.z * 64u);
         }
     }
 }

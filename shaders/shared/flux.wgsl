@@ -1,7 +1,7 @@
 // Sums of flux as fixed point: integer additions commute, so the same request gives the same bytes.
 //
 // One u32 per texel and channel holds 1024 times the flux of an evenly lit texel. Where a focus passes that, the sum wraps, what
-// landed is short by a whole 2³² counts, the host sees it in the energy account and runs the sun again with WIDE_SUMS: 64 bits
+// landed is short by a whole 2³² counts, the host sees it in the energy account and runs the light again with WIDE_SUMS: 64 bits
 // in two words, which nothing can fill (2⁴⁰ counts at most per beam). Where u32 would be too coarse the host starts with those.
 
 override WIDE_SUMS: bool = false;

@@ -136,7 +136,7 @@ fn footprint_of(target_map: Target, a: vec2f, b: vec2f, c: vec2f) -> Footprint {
     return f;
 }
 
-// Deals out row `y` of a footprint; returns the share that fell beside the map. There is one place that writes: on a CPU driver both
+// Deals out row `y` of a footprint; returns the share that fell beside the map. A row has one place that writes: on a CPU driver both
 // sides of every branch are run, and atomics are what costs.
 //
 // The row's share of the flux comes from the corners' heights alone and is dealt out by what of the row's area lies in each column,

@@ -1,4 +1,4 @@
-// From flux sums to W/m²: what the passes that finish a sun's maps share.
+// From flux sums to W/m²: what the passes that finish a light's maps share.
 
 struct Resolve {
     power: vec4f,          // of a sun the irradiance of a plane facing it, W/m²; of a point light its intensity, W/sr

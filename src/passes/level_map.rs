@@ -1,4 +1,4 @@
-//! Level map — draws what a sun sees of a mesh through flat water (Tipprasert 2006, §4.2): front, back, normals; then layer by layer
+//! Level map — draws what a light sees of a mesh through flat water (Tipprasert 2006, §4.2): front, back, normals; then layer by layer
 //! what lies behind (depth peeling: Everitt, Interactive Order-Independent Transparency, 2001).
 
 use super::desc::{PassDesc, Repeat, Run, Step, Surface, Work};

@@ -31,7 +31,7 @@ pub(super) fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
         return Err("nothing under water is to be lit".to_owned());
     }
     if facts.lights.is_empty() {
-        return Err("no sun above the horizon shines into the water".to_owned());
+        return Err("no sun above the horizon and no point light shines into the water".to_owned());
     }
     let waves = facts.surface.components.len();
     let count = |wanted: fn(&Source) -> bool, name: &str, names: &str| {

@@ -59,11 +59,12 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
         }
         "landed" => texels * f64::from(facts.channels()),
         "irradiance" => texels,
-        // All the light's passes with two fifths of the cells and mostly half the texels along a side, then the places it looks at.
+        // All the light's passes with two fifths of the cells on the coarse maps, then its part of the places that are looked at.
         "coarse_irradiance" => {
+            let coarse_texels = MapLayout::of(&facts.coarse()).flux_texels() as f64;
             0.16 * cells * (5.0 * sums + 2.0 + waves + wet.sqrt())
-                + 0.25 * texels * sums
-                + compared_places(facts)
+                + coarse_texels * sums
+                + compared_places(facts) / facts.lights.len().max(1) as f64
         }
         "estimate" => compared_places(facts),
         "camera_hits" => pixels * (1.0 + waves),

@@ -105,7 +105,7 @@ fn figures_of_queues_and_maps_agree() {
     agrees("NOWHERE", f64::from(maps::NOWHERE));
     agrees("EMPTY_DEPTH", level_map::EMPTY_DEPTH);
     let camera = module("passes/camera_irradiance.wgsl");
-    assert_eq!(array_length(&camera, "suns"), MOST_LIGHTS);
+    assert_eq!(array_length(&camera, "air_lights"), MOST_LIGHTS);
     assert!(caustica::config::Limits::default().max_lights <= MOST_LIGHTS);
     let landed_module = module("passes/landed.wgsl");
     let each = constant(&landed_module, "TEXELS_EACH").unwrap() as u32;
@@ -211,7 +211,7 @@ fn check_cover(pass: &PassDesc, facts: &SceneFacts, run: Run<'_>, tile: [u32; 2]
 #[test]
 fn dispatches_cover_their_work() {
     let facts = facts();
-    let sun = Run::Light {
+    let light = Run::Light {
         index: 0,
         wide_sums: false,
     };
@@ -221,9 +221,9 @@ fn dispatches_cover_their_work() {
         &passes::beams::PASS,
         &passes::hits::PASS,
     ] {
-        check_cover(pass, &facts, sun, [64, 1], vertices);
+        check_cover(pass, &facts, light, [64, 1], vertices);
     }
-    check_cover(&passes::deposit::PASS, &facts, sun, [8, 8], [131, 131]);
+    check_cover(&passes::deposit::PASS, &facts, light, [8, 8], [131, 131]);
     let maps = MapLayout::of(&facts);
     assert_eq!(maps.flux_texels(), floor_texels(&facts) + 64 * 64);
     let band = Run::Band {
@@ -245,7 +245,7 @@ fn floor_texels(facts: &SceneFacts) -> u64 {
 #[test]
 fn sums_over_texels_cover_all_of_them() {
     let facts = facts();
-    let sun = Run::Light {
+    let light = Run::Light {
         index: 0,
         wide_sums: false,
     };
@@ -253,14 +253,14 @@ fn sums_over_texels_cover_all_of_them() {
         Work::Compute(Groups::Direct(groups)) => groups.iter().product::<u32>(),
         _ => panic!("no dispatch"),
     };
-    let landed = (landed::PASS.steps)(&facts, sun);
+    let landed = (landed::PASS.steps)(&facts, light);
     let maps = MapLayout::of(&facts);
     let needed = maps
         .flux_texels()
         .div_ceil(u64::from(landed::TEXELS_PER_GROUP));
     assert_eq!(u64::from(groups(landed[0].work)), needed);
     let side = size(&module("passes/irradiance.wgsl"), "irradiance_main")[0];
-    let irradiance = (passes::irradiance::PASS.steps)(&facts, sun);
+    let irradiance = (passes::irradiance::PASS.steps)(&facts, light);
     assert_eq!(irradiance.len(), 2, "the floor and one object");
     let texels = [floor_texels(&facts), 64 * 64];
     for (step, texels) in irradiance.iter().zip(texels) {

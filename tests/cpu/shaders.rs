@@ -14,6 +14,7 @@ use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Va
 const BASELINE_STORAGE_BUFFERS: usize = 8;
 /// Uniform variables that steps bring along.
 const UNIFORMS: [&str; 10] = [
+    "air_lights",
     "coarse_light",
     "estimate",
     "level_map_view",
@@ -22,7 +23,6 @@ const UNIFORMS: [&str; 10] = [
     "resolve",
     "span",
     "split",
-    "suns",
     "view",
 ];
 /// Textures that the executor draws into.

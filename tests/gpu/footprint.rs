@@ -182,7 +182,7 @@ fn a_floor_at_the_surface_is_lit_like_the_water() {
 #[test]
 fn thin_footprints_lose_nothing() {
     // Crests across the texels that focus a little before or behind the floor: footprints far longer than wide, but not so thin
-    // that they count as segments. Few cells and many texels make each a case for lanes that share it.
+    // that they count as segments. Of few cells over many texels each is shared out over lanes.
     let focus = 1.0 / (2.0 * std::f64::consts::TAU.powi(2) * (1.0 - 1.0 / 1.333));
     for (cells, side) in [(8, 512), (5, 1024)] {
         for strength in [0.5, 0.9, 0.97, 1.003, 1.02, 1.1, 3.0, 20.0] {

@@ -223,16 +223,14 @@ fn doubled(mut scene: Value) -> Value {
     scene
 }
 
-/// Checks one scene; false where it was refused.
-fn check(renderer: &mut Renderer, store: &MeshStore, value: &Value, again: bool) -> bool {
-    let Some(scene) = resolved(value.clone(), store) else {
-        return false;
-    };
+/// Checks one scene; by how much its worst account is open, or `None` where it was refused.
+fn check(renderer: &mut Renderer, store: &MeshStore, value: &Value, again: bool) -> Option<f64> {
+    let scene = resolved(value.clone(), store)?;
     let frame = match try_render(renderer, &scene) {
         Ok(frame) => frame,
         Err(caustica::render::RenderError::Scene(error)) => {
             assert!(!error.issues.is_empty());
-            return false;
+            return None;
         }
         Err(error) => panic!("{error}"),
     };
@@ -242,9 +240,14 @@ fn check(renderer: &mut Renderer, store: &MeshStore, value: &Value, again: bool)
     }
     let quality = &value["quality"];
     let by_planes = quality["placement"] == "planes" || quality["method"] == "volumetric";
-    for account in &frame.stats.energy {
-        let accounted = account.closure <= CLOSURE || by_planes;
-        assert!(accounted, "open by {:e}: {account:?}", account.closure);
+    let mut worst = 0.0;
+    for account in frame.stats.energy.iter().filter(|_| !by_planes) {
+        worst = f64::max(worst, account.closure);
+        assert!(
+            account.closure <= CLOSURE,
+            "open by {:e}: {account:?}",
+            account.closure
+        );
     }
     for warning in &frame.stats.warnings {
         assert!(
@@ -278,7 +281,7 @@ fn check(renderer: &mut Renderer, store: &MeshStore, value: &Value, again: bool)
             assert!(!is_light || is_exact, "{name:?} {at}: {a:e}, doubled {b:e}");
         }
     }
-    true
+    Some(worst)
 }
 
 #[test]
@@ -299,6 +302,7 @@ fn random_scenes_are_finite_closed_linear_and_the_same_again() {
     let store = MeshStore::new(&Limits::default());
     let mut renderer = renderer();
     let mut rendered = 0;
+    let mut worst = (0.0, 0);
     let mut failed = Vec::new();
     for seed in seeds {
         let value = scene(&mut Random(seed));
@@ -306,17 +310,26 @@ fn random_scenes_are_finite_closed_linear_and_the_same_again() {
             check(&mut renderer, &store, &value, seed % AGAIN == 0)
         }));
         match checked {
-            Ok(done) => rendered += u64::from(done),
+            Ok(None) => {}
+            Ok(Some(closure)) => {
+                rendered += 1;
+                if closure > worst.0 {
+                    worst = (closure, seed);
+                }
+            }
             Err(_) => {
                 println!("scene {seed}: {value}");
                 failed.push(seed);
             }
         }
     }
-    println!("{rendered} of {scenes} scenes rendered, the others refused");
+    println!(
+        "{rendered} of {scenes} scenes rendered, the others refused; accounts are open by {:.1e} at most (scene {})",
+        worst.0, worst.1
+    );
     assert!(failed.is_empty(), "scenes {failed:?} of {scenes}");
     assert!(
-        rendered as f64 >= RENDERED * scenes as f64,
+        scenes == 1 || rendered as f64 >= RENDERED * scenes as f64,
         "{rendered} of {scenes}"
     );
 }
