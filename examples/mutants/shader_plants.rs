@@ -244,6 +244,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         from: "+ edges.dy.z * mean_clamped(",
         to: "- edges.dy.z * mean_clamped(",
         cases: &[
+            "slopes_of_20",
             "footprints_of_a_hundred_thousand_texels",
             "footprints_of_millions_of_texels",
         ],
