@@ -50,10 +50,11 @@ impl Bench {
         let red: Vec<&'static Case> = tried()
             .filter(|case| !self.holds(case, &mut renderer))
             .collect();
-        let is_missing = |name: &&&str| !red.iter().any(|case| case.name == **name);
-        let missing = plant.cases.iter().filter(is_missing).copied().collect();
-        let names = red.iter().map(|case| case.name);
-        let unexpected = names.filter(|name| !plant.cases.contains(name)).collect();
+        let is_red = |name: &str| red.iter().any(|case| case.name == name);
+        let names = || tried().map(|case| case.name);
+        let missing = names().filter(|name| plant.red.holds(name) && !is_red(name));
+        let unexpected = names().filter(|name| !plant.red.holds(name) && is_red(name));
+        let (missing, unexpected) = (missing.collect(), unexpected.collect());
         Ok(Noticed {
             red,
             missing,

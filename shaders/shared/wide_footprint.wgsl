@@ -20,6 +20,7 @@ fn deposit_texels(target_map: Target, uv: mat3x2f, arriving: vec3f, first: u32, 
     return beside;
 }
 
+// Share of a texel: how much of the footprint's area lies in it.
 fn texel_share(uv: mat3x2f, size: vec2i, texel: vec2i, per_area: f32) -> f32 {
     let base = vec2f(texel);
     let p = uv[0] - base;

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::passes::estimate::{self, Compared};
 use crate::passes::maps::MapLayout;
-use crate::passes::{estimate, slot};
+use crate::passes::slot;
 use crate::plan::Plan;
 use crate::scene::facts::SceneFacts;
 
@@ -62,22 +63,29 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
         // All the light's passes with two fifths of the cells on the coarse maps, then its part of the places that are looked at.
         "coarse_irradiance" => {
             let coarse_texels = MapLayout::of(&facts.coarse()).flux_texels() as f64;
-            0.16 * cells * (5.0 * sums + 2.0 + waves + wet.sqrt())
+            0.4_f64.powi(2) * cells * (5.0 * sums + 2.0 + waves + wet.sqrt())
                 + coarse_texels * sums
-                + compared_places(facts) / facts.lights.len().max(1) as f64
+                + places_of_a_light(facts)
         }
-        "estimate" => compared_places(facts),
+        "estimate" => compared_places(facts, |_| true),
         "camera_hits" => pixels * (1.0 + waves),
         "camera_irradiance" | "shade" => pixels,
         _ => 0.0,
     }
 }
 
-/// Places at which a frame's estimate of its own error compares maps.
-fn compared_places(facts: &SceneFacts) -> f64 {
+/// Places at which a frame's estimate of its own error compares these maps.
+fn compared_places(facts: &SceneFacts, these: impl Fn(&Compared) -> bool) -> f64 {
     let compared = estimate::compared(facts, &facts.coarse());
-    let places = compared.iter().map(|map| map.comparison.places);
-    places.map(f64::from).sum()
+    let these = compared.iter().filter(|map| these(map));
+    these.map(|map| f64::from(map.comparison.places)).sum()
+}
+
+/// Those of one light, as a mean: the floor's, to which every light adds, and those of its own maps.
+fn places_of_a_light(facts: &SceneFacts) -> f64 {
+    let lights = facts.lights.len().max(1) as f64;
+    compared_places(facts, |map| map.light.is_none())
+        + compared_places(facts, |map| map.light.is_some()) / lights
 }
 
 /// Length of the shadows' edges, in sides of the lights' windows.

@@ -301,7 +301,7 @@ fn random_scenes_are_finite_closed_linear_and_the_same_again() {
     let scenes = seeds.len();
     let store = MeshStore::new(&Limits::default());
     let mut renderer = renderer();
-    let mut rendered = 0;
+    let mut rendered = 0_usize;
     let mut worst = (0.0, 0);
     let mut failed = Vec::new();
     for seed in seeds {
