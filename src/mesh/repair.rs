@@ -40,7 +40,7 @@ pub(super) fn repair(raw: &[RawTriangle]) -> Result<Repaired, MeshError> {
         triangles: raw.len(),
     };
     // A sliver that is going to be dropped must not move the origin, so flat triangles go first in f64, and again once
-    // the corners are rounded.
+    // the corners and then the edges are rounded.
     let solid = || raw.iter().filter(|t| face_normal(t.positions_m).is_some());
     let (min, max) = solid()
         .flat_map(|t| t.positions_m)
@@ -62,9 +62,14 @@ pub(super) fn repair(raw: &[RawTriangle]) -> Result<Repaired, MeshError> {
         let corners = triangle
             .positions_m
             .map(|p| (p - origin_m).as_vec3() + Vec3::ZERO);
-        let Some(face_normal) = face_normal(corners.map(|p| p.as_dvec3())) else {
+        let Some(normal) = face_normal(corners.map(|p| p.as_dvec3())) else {
             continue;
         };
+        // The renderer takes edges from the first corner in f32: needles whose edges round alike are met by no ray.
+        let [a, b, c] = corners;
+        if face_normal([DVec3::ZERO, (b - a).as_dvec3(), (c - a).as_dvec3()]).is_none() {
+            continue;
+        }
         let vertices = rotated(corners.map(|p| welder.vertex(p)));
         if !seen.insert(vertices) {
             duplicates += 1;
@@ -74,13 +79,13 @@ pub(super) fn repair(raw: &[RawTriangle]) -> Result<Repaired, MeshError> {
         let normals = triangle.normals.map(|n| n.try_normalize());
         if normals
             .iter()
-            .all(|n| n.is_some_and(|n| n.dot(face_normal) < 0.0))
+            .all(|n| n.is_some_and(|n| n.dot(normal) < 0.0))
         {
             against += 1;
         }
         kept.push(Triangle {
             positions_m: corners,
-            normals: normals.map(|n| n.unwrap_or(face_normal).as_vec3()),
+            normals: normals.map(|n| n.unwrap_or(normal).as_vec3()),
             material: triangle.material,
         });
     }
