@@ -27,7 +27,7 @@ build: deps
 test: deps
 	$(CARGO) test --release --locked
 
-# Run all tests with many more random scenes and frames; some hours.
+# Run all tests with many more random scenes and frames; about half an hour on two cores.
 nightly: deps
 	CAUSTICA_PROPERTY_CASES=2000 CAUSTICA_RENDERS=10000 $(CARGO) test --release --locked
 

@@ -144,28 +144,42 @@ pub fn groups_of(compared: &[Compared]) -> u32 {
 }
 
 impl SceneFacts {
-    /// The same scene with two fifths of the water cells and, where that divides evenly, half the floor's texels: about a sixth of the work.
+    /// The same scene with two fifths of the water cells and, where that divides evenly, half the floor's texels along each side; a quarter
+    /// of them where those are still as many as the frame has water cells, because then only a few cells' light lies in a texel. A
+    /// sixth of the work, or less.
     ///
     /// Beams that straddle receivers are halved once less.
     ///
-    /// A view's map may always be halved, since it is looked up between its texels.
+    /// A view's map is always halved, since it is looked up between its texels.
     #[must_use]
     pub fn coarse(&self) -> Self {
-        let halved = |texels: u32| {
-            if self.camera.is_some() || texels.is_multiple_of(2) {
-                texels.div_ceil(2)
+        let is_view = self.camera.is_some();
+        let lowered = |map: FloorMap| {
+            let sides = [map.width, map.height];
+            let quarters = |texels: u32| {
+                texels.is_multiple_of(4) && texels / 4 >= self.quality.water_cells
+            };
+            let [width, height] = if !is_view && sides.into_iter().all(quarters) {
+                sides.map(|texels| texels / 4)
             } else {
-                texels
+                sides.map(|texels| {
+                    if is_view || texels.is_multiple_of(2) {
+                        texels.div_ceil(2)
+                    } else {
+                        texels
+                    }
+                })
+            };
+            FloorMap {
+                width,
+                height,
+                ..map
             }
         };
         let mut coarse = self.clone();
         coarse.quality.water_cells = (2 * self.quality.water_cells / 5).max(1);
         coarse.quality.split_levels = self.quality.split_levels.saturating_sub(1);
-        coarse.floor_map = self.floor_map.map(|map| FloorMap {
-            width: halved(map.width),
-            height: halved(map.height),
-            ..map
-        });
+        coarse.floor_map = self.floor_map.map(lowered);
         coarse
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::RenderError;
-use crate::accuracy::estimate::{FrameComparison, estimate_error};
+use crate::accuracy::estimate::{Compared, FrameComparison, estimate_error};
 use crate::frame::Layer;
 use crate::passes::maps::MapLayout;
 use crate::passes::slot::{ENERGY_TERMS, Slot};
@@ -298,12 +298,17 @@ pub(super) fn estimated_error(facts: &SceneFacts, differences: &[[f32; 4]]) -> O
             landed_w += f64::from(sums[1]) * map.texel_m2;
         }
     }
+    let texels = match (facts.camera, facts.floor_map, coarse.floor_map) {
+        (Some(_), ..) => Compared::Between,
+        (None, Some(fine), Some(low)) => Compared::Blocks(fine.width / low.width),
+        (None, ..) => Compared::Blocks(1),
+    };
     (landed_w > 0.0).then(|| {
         estimate_error(&FrameComparison {
             difference: difference_w / landed_w,
             cells_ratio: f64::from(facts.quality.water_cells)
                 / f64::from(coarse.quality.water_cells),
-            is_view: facts.camera.is_some(),
+            texels,
         })
     })
 }

@@ -224,7 +224,8 @@ impl Renderer {
             .map(|index| light::needs_wide_sums(&coarse, index))
             .collect();
         loop {
-            let accounts = self.run_coarse_lights(
+            let mut started = Recording::start(time_ms);
+            let (mut encoder, accounts) = self.coarse_lights(
                 (&coarse, facts),
                 &wide_sums,
                 (&sums, coarse_light),
@@ -232,8 +233,14 @@ impl Renderer {
                 cancel,
                 time_ms,
             )?;
-            let started = Recording::start(time_ms);
-            let mut encoder = self.encoder("estimate");
+            if self.timing.by_host() {
+                let lights = std::mem::replace(&mut encoder, self.encoder("estimate"));
+                let began = started.at;
+                self.submit(lights, started, time_ms)?;
+                let name = passes::coarse_irradiance::PASS.name;
+                self.timing.note(name, ms_since(began));
+                started = Recording::start(time_ms);
+            }
             for pass in estimate {
                 let run = Run::Frame { coarse: &coarse };
                 self.record(&mut encoder, pass, facts, run, buffers, None)?;
@@ -267,8 +274,9 @@ impl Renderer {
         }
     }
 
-    /// Sends all coarse lights to the GPU, and returns their accounts, which are on their way.
-    fn run_coarse_lights(
+    /// Records all coarse lights, each of them submitted when the next begins: an encoder that ends with the last, and their accounts,
+    /// which are there once that has run.
+    fn coarse_lights(
         &mut self,
         (coarse, fine): (&SceneFacts, &SceneFacts),
         wide_sums: &[bool],
@@ -276,16 +284,19 @@ impl Renderer {
         buffers: &FrameBuffers,
         cancel: &CancellationToken,
         time_ms: &mut TimeStats,
-    ) -> Result<Vec<Staged>, RenderError> {
-        let group = passes::coarse_irradiance::PASS.name;
+    ) -> Result<(wgpu::CommandEncoder, Vec<Staged>), RenderError> {
         let energy = buffers.get(slot_name(Slot::Energy));
-        let started = Recording::start(time_ms);
+        let mut recorded: Option<wgpu::CommandEncoder> = None;
         let mut accounts = Vec::new();
-        self.timing.group(Some(group));
+        self.timing.group(Some(passes::coarse_irradiance::PASS.name));
         for (index, &wide_sums) in wide_sums.iter().enumerate() {
             check_cancelled(cancel)?;
-            let run = Run::Light { index, wide_sums };
+            // The next light's receivers take the place of this one's, so what reads those has to be on its way.
+            if let Some(light) = recorded.take() {
+                self.gpu.queue.submit([light.finish()]);
+            }
             let mut encoder = self.begin_light(coarse, index, wide_sums, buffers);
+            let run = Run::Light { index, wide_sums };
             self.record_all(&mut encoder, sums, coarse, run, buffers, time_ms)?;
             let run = Run::CoarseLight {
                 index,
@@ -295,18 +306,11 @@ impl Renderer {
             self.record_all(&mut encoder, maps, coarse, run, buffers, time_ms)?;
             let account = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
             accounts.push(account);
-            self.gpu.queue.submit([encoder.finish()]);
+            recorded = Some(encoder);
         }
         self.timing.group(None);
-        time_ms.gpu += std::mem::take(&mut self.cutting.unaccounted_ms);
-        time_ms.upload += ms_since(started.at) - (time_ms.gpu - started.gpu_ms);
-        if self.timing.by_host() {
-            let submitted = Instant::now();
-            self.gpu.wait()?;
-            time_ms.gpu += ms_since(submitted);
-            self.timing.note(group, ms_since(started.at));
-        }
-        Ok(accounts)
+        let encoder = recorded.unwrap_or_else(|| self.encoder("estimate"));
+        Ok((encoder, accounts))
     }
 
     /// Sets the receivers of a light and begins its commands, with empty queues and its flux sums at zero.

@@ -1,7 +1,7 @@
 //! What a scene's facts warn of before anything is rendered.
 
 use caustica::scene::facts::SceneFacts;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::scene_files;
 
@@ -29,4 +29,32 @@ fn cells_too_coarse_for_the_waves_are_warned_of() {
     );
     assert_eq!(warnings(32), [coarse]);
     assert_eq!(warnings(256), []);
+}
+
+#[test]
+fn the_light_done_coarsely_has_coarser_maps_that_divide_the_fine_ones() {
+    let coarse = |cells: u32, output: Value| {
+        let resolved = scene_files::scene(json!({
+            "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 0.8 }] },
+            "floor": { "depth_m": 2, "size_m": [8, 8] },
+            "lights": [{ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [1, 1, 1] }],
+            "camera": { "position_m": [0, 2, 2], "target_m": [0, -1.5, 0] },
+            "quality": { "water_cells": cells, "map_texels": 255 },
+            "output": output
+        }));
+        let coarse = SceneFacts::of(&resolved).unwrap().coarse();
+        let map = coarse.floor_map.unwrap();
+        (coarse.quality.water_cells, [map.width, map.height])
+    };
+    let map = |width: u32, height: u32| json!({ "kind": "irradiance_map", "receiver": "floor", "width": width, "height": height });
+    // A quarter as long as that has a texel for each cell, else half.
+    assert_eq!(coarse(64, map(256, 256)), (25, [64, 64]));
+    assert_eq!(coarse(65, map(256, 256)), (26, [128, 128]));
+    assert_eq!(coarse(64, map(256, 252)), (25, [128, 126]));
+    assert_eq!(coarse(16, map(2048, 1024)), (6, [512, 256]));
+    // What does not divide stays.
+    assert_eq!(coarse(64, map(255, 258)), (25, [255, 129]));
+    // A camera looks between the texels.
+    let view = json!({ "kind": "view", "width": 64, "height": 36 });
+    assert_eq!(coarse(16, view), (6, [128, 128]));
 }
