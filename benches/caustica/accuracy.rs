@@ -16,7 +16,8 @@ use crate::spread::{Spread, ms};
 pub(crate) fn estimates(renderer: &mut Renderer, effort: Effort) -> Result<Table, Box<dyn Error>> {
     let mut table = Table::new(
         "A frame's own estimate: time",
-        "Frames without and with `quality.estimate_error`, in turn; ms, median (smallest..largest), and the ratio of the medians.",
+        "Frames without and with `quality.estimate_error`, in turn; ms, median (smallest..largest), and the median of the pairs' ratios: \
+         the two of a pair are seconds apart at most, however a busy machine's speed changes.",
         &["scene", "cells", "plain", "estimating", "ratio"],
     );
     let cases = [
@@ -46,8 +47,12 @@ pub(crate) fn estimates(renderer: &mut Renderer, effort: Effort) -> Result<Table
             without.push(time(renderer, &plain)?);
             with.push(time(renderer, &estimating)?);
         }
+        let ratios = with
+            .iter()
+            .zip(&without)
+            .map(|(with, without)| with / without);
+        let ratio = Spread::of(ratios.collect()).median();
         let (without, with) = (Spread::of(without), Spread::of(with));
-        let ratio = with.median() / without.median();
         table.rows.push(vec![
             Cell::text(name),
             Cell::count(cells),

@@ -136,8 +136,8 @@ fn range(ratios: &[f64]) -> String {
 
 fn estimates(chapters: &[Chapter]) -> String {
     let mut text = "\n## A frame's own estimate\n\n\
-        `quality.estimate_error` does the light once more with two fifths of the cells, a sixth of the work, and compares. Estimate over true\n\
-        error, over all settings below whose error is at least three times the truth's own:\n\n\
+        `quality.estimate_error` does the light once more with two fifths of the cells, a sixth of the work or less, and compares. Estimate over\n\
+        true error, over all settings below whose error is at least three times the truth's own:\n\n\
         | scene | settings | estimate ÷ true error |\n| --- | ---: | ---: |\n"
         .to_owned();
     for chapter in chapters {

@@ -13,6 +13,8 @@ pub const PLACES_PER_GROUP: u32 = 64 * 2;
 /// A map of twice as many places and more is looked at in about so many, spread over it: their mean is the map's to a few hundredths,
 /// where the estimate itself is good to a factor of two.
 const ENOUGH_PLACES: u32 = 2048;
+/// Fine texels along a side of the largest blocks that are compared. Half as many of those are enough: reading them is what costs.
+const QUARTER: u32 = 4;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
@@ -79,7 +81,14 @@ pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<Compared> {
         } else {
             comparison.fine_width * comparison.fine_height
         };
-        comparison.one_in = (all_places / ENOUGH_PLACES).max(1);
+        let in_quarters =
+            comparison.blocks == 1 && comparison.fine_width == QUARTER * comparison.coarse_width;
+        let enough = if in_quarters {
+            ENOUGH_PLACES / 2
+        } else {
+            ENOUGH_PLACES
+        };
+        comparison.one_in = (all_places / enough).max(1);
         comparison.places = all_places.div_ceil(comparison.one_in);
         comparison.first_group = groups_of(&all);
         let stands_for = f64::from(all_places) / f64::from(comparison.places);
@@ -157,10 +166,10 @@ impl SceneFacts {
         let lowered = |map: FloorMap| {
             let sides = [map.width, map.height];
             let quarters = |texels: u32| {
-                texels.is_multiple_of(4) && texels / 4 >= self.quality.water_cells
+                texels.is_multiple_of(QUARTER) && texels / QUARTER >= self.quality.water_cells
             };
             let [width, height] = if !is_view && sides.into_iter().all(quarters) {
-                sides.map(|texels| texels / 4)
+                sides.map(|texels| texels / QUARTER)
             } else {
                 sides.map(|texels| {
                     if is_view || texels.is_multiple_of(2) {

@@ -288,7 +288,8 @@ impl Renderer {
         let energy = buffers.get(slot_name(Slot::Energy));
         let mut recorded: Option<wgpu::CommandEncoder> = None;
         let mut accounts = Vec::new();
-        self.timing.group(Some(passes::coarse_irradiance::PASS.name));
+        self.timing
+            .group(Some(passes::coarse_irradiance::PASS.name));
         for (index, &wide_sums) in wide_sums.iter().enumerate() {
             check_cancelled(cancel)?;
             // The next light's receivers take the place of this one's, so what reads those has to be on its way.

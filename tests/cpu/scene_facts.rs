@@ -42,19 +42,27 @@ fn the_light_done_coarsely_has_coarser_maps_that_divide_the_fine_ones() {
             "quality": { "water_cells": cells, "map_texels": 255 },
             "output": output
         }));
-        let coarse = SceneFacts::of(&resolved).unwrap().coarse();
-        let map = coarse.floor_map.unwrap();
-        (coarse.quality.water_cells, [map.width, map.height])
+        let fine = SceneFacts::of(&resolved).unwrap();
+        let coarse = fine.coarse();
+        let sides = |facts: &SceneFacts| facts.floor_map.map(|map| [map.width, map.height]);
+        let cells = coarse.quality.water_cells;
+        (cells, sides(&coarse).unwrap(), sides(&fine).unwrap())
     };
-    let map = |width: u32, height: u32| json!({ "kind": "irradiance_map", "receiver": "floor", "width": width, "height": height });
+    let of_map = |cells: u32, [width, height]: [u32; 2]| {
+        let output = json!({ "kind": "irradiance_map", "receiver": "floor", "width": width, "height": height });
+        let (cells, low, _) = coarse(cells, output);
+        (cells, low)
+    };
     // A quarter as long as that has a texel for each cell, else half.
-    assert_eq!(coarse(64, map(256, 256)), (25, [64, 64]));
-    assert_eq!(coarse(65, map(256, 256)), (26, [128, 128]));
-    assert_eq!(coarse(64, map(256, 252)), (25, [128, 126]));
-    assert_eq!(coarse(16, map(2048, 1024)), (6, [512, 256]));
+    assert_eq!(of_map(64, [256, 256]), (25, [64, 64]));
+    assert_eq!(of_map(65, [256, 256]), (26, [128, 128]));
+    assert_eq!(of_map(64, [256, 252]), (25, [128, 126]));
+    assert_eq!(of_map(16, [2048, 1024]), (6, [512, 256]));
     // What does not divide stays.
-    assert_eq!(coarse(64, map(255, 258)), (25, [255, 129]));
+    assert_eq!(of_map(64, [255, 258]), (25, [255, 129]));
     // A camera looks between the texels.
     let view = json!({ "kind": "view", "width": 64, "height": 36 });
-    assert_eq!(coarse(16, view), (6, [128, 128]));
+    let (cells, low, fine) = coarse(16, view);
+    assert_eq!((cells, low), (6, fine.map(|texels| texels.div_ceil(2))));
+    assert_eq!(fine[0], 255);
 }
