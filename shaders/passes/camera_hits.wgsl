@@ -19,7 +19,9 @@
 
 const MARCH_STEPS: u32 = 160u;
 const SURFACE_TOLERANCE_M: f32 = 2e-5;
-const START_M: f32 = 1e-4;
+// Where a ray that has met the water starts to look: as far before that point as the point may lie behind the water, so that what is
+// just under the surface is not jumped.
+const START_M: f32 = -2.0 * SURFACE_TOLERANCE_M;
 
 struct Ray {
     origin: vec3f,
@@ -127,7 +129,7 @@ fn look_from_air(ray: Ray) -> Pixel {
     let below = Ray(p, refracted.xyz);
     let seen = trace_scene(below, START_M, VERY_FAR_M);
     let weight = select(0.0, (1.0 - reflectance) / (view.ior * view.ior), seen.receiver >= 0);
-    return Pixel(seen, p + refracted.xyz * seen.t, t_water, seen.t, weight, reflectance, 0.0);
+    return Pixel(seen, p + refracted.xyz * seen.t, t_water, max(seen.t, 0.0), weight, reflectance, 0.0);
 }
 
 fn look_from_water(ray: Ray) -> Pixel {
@@ -156,7 +158,7 @@ fn look_from_water(ray: Ray) -> Pixel {
     let mirrored = Ray(p, reflect_direction(ray.direction, normal));
     let seen = trace_scene(mirrored, START_M, VERY_FAR_M);
     let weight = select(0.0, reflectance, seen.receiver >= 0);
-    return Pixel(seen, p + mirrored.direction * seen.t, t_water, t_water + seen.t, weight, out_weight, t_water);
+    return Pixel(seen, p + mirrored.direction * seen.t, t_water, t_water + max(seen.t, 0.0), weight, out_weight, t_water);
 }
 
 @compute @workgroup_size(8, 8)

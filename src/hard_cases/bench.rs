@@ -218,12 +218,15 @@ fn nothing_renders() -> Failure {
 }
 
 /// Warnings about flux: each has to say how much.
-const OF_FLUX: [&str; 5] = [
+const OF_FLUX: [&str; 8] = [
     "beams_torn",
     "light_from_below_not_followed",
+    "light_leaves_water_again",
     "light_under_floor",
     "planes_do_not_conserve",
     "scattering_not_followed",
+    "waves_bare_floor",
+    "waves_shade_waves",
 ];
 
 /// What the accounts list as lost or only roughly placed, and no warning tells; or a warning about flux that does not say how much.

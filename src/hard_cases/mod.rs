@@ -23,6 +23,7 @@ pub mod page;
 mod place;
 mod sabotage;
 mod truths;
+mod unfollowed;
 mod water;
 
 pub use case::{Case, Family, Outcome, Verdict};

@@ -2,13 +2,19 @@
 
 use serde_json::{Value, json};
 
-use super::bench::Bench;
+use super::bench::{Bench, texels};
 use super::case::Family::Water;
 use super::case::{Case, Failure};
 use super::truths::{flat_error, largest_to_mean, pool, reference_error, sun, waves, with, worst};
+use super::unfollowed::{flux_below_floor_w, flux_leaving_again_w, flux_turned_away_w};
+use crate::physics::fresnel::fresnel_transmittance;
+use crate::render::RenderError;
+use crate::scene::LayerName;
+use crate::scene::facts::SceneFacts;
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
 const REFERENCE: &str = "relative L1 against the reference";
+const SEEN: &str = "worst pixel of the irradiance that a camera sees, against E cos θ T";
 const PERIOD: &str = "largest difference of moments whole periods apart, one of them in the first period, to the mean";
 const PHASE: &str = "phases in f32, or too few digits of the time";
 const AGAIN: &str = "rays that would meet the water again, wide drifts, slopes that look away";
@@ -64,6 +70,61 @@ pub(super) const CASES: &[Case] = &[
         },
     ),
     Water.case(
+        "light_that_leaves_the_water_again",
+        "a warning that is silent, or says the wrong flux",
+        "largest relative difference of the flux warned of from that of f64 rays; 0 where neither has any",
+        0.02,
+        |b| {
+            let mut worst_so_far = 0.0_f64;
+            for (slope, elevation_deg) in [(1.0, 90.0), (5.0, 90.0), (20.0, 90.0), (3.0, 40.0)] {
+                let scene = with(steep(slope), &[("/lights/0", sun(elevation_deg, 75.0))]);
+                let resolved = b.scene(scene)?;
+                let facts = SceneFacts::of(&resolved).map_err(RenderError::from)?;
+                let due_w = flux_leaving_again_w(&facts);
+                let frame = b.render_resolved(&resolved)?;
+                let told_w = frame
+                    .stats
+                    .warnings
+                    .iter()
+                    .filter(|warning| warning.code == "light_leaves_water_again")
+                    .filter_map(|warning| Some(warning.flux_w?[0]))
+                    .sum::<f64>();
+                worst_so_far = worst(worst_so_far, (told_w - due_w).abs() / due_w.max(1e-9));
+            }
+            Ok(worst_so_far)
+        },
+    ),
+    Water.case(
+        "slopes_that_look_away",
+        "light counted twice without a word",
+        "relative difference of the flux warned of from that of the slopes, by f64",
+        0.01,
+        |b| {
+            let resolved = b.scene(with(steep(2.0), &[("/lights/0", sun(30.0, 20.0))]))?;
+            let facts = SceneFacts::of(&resolved).map_err(RenderError::from)?;
+            let due_w = flux_turned_away_w(&facts);
+            let frame = b.render_resolved(&resolved)?;
+            let told = frame.stats.warnings.iter().find(|w| w.code == "waves_shade_waves");
+            let told_w = told.and_then(|w| w.flux_w).map_or(0.0, |w| w[0]);
+            Ok((told_w / due_w - 1.0).abs())
+        },
+    ),
+    Water.case(
+        "troughs_below_the_floor",
+        "light that enters under the floor and lands on it all the same",
+        "relative difference of the flux warned of from that over the bared floor, by f64",
+        0.02,
+        |b| {
+            let resolved = b.scene(with(steep(0.5), &[("/floor/depth_m", json!(0.05))]))?;
+            let facts = SceneFacts::of(&resolved).map_err(RenderError::from)?;
+            let due_w = flux_below_floor_w(&facts);
+            let frame = b.render_resolved(&resolved)?;
+            let told = frame.stats.warnings.iter().find(|w| w.code == "waves_bare_floor");
+            let told_w = told.and_then(|w| w.flux_w).map_or(0.0, |w| w[0]);
+            Ok((told_w / due_w - 1.0).abs())
+        },
+    ),
+    Water.case(
         "floor_at_depth_0",
         "rays without length",
         CLOSED_FORM,
@@ -76,6 +137,20 @@ pub(super) const CASES: &[Case] = &[
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(1e-4))])),
+    ),
+    Water.case(
+        "a_view_of_a_floor_at_depth_0",
+        "looks that start behind what they should see",
+        SEEN,
+        1e-4,
+        |b| seen_error(b, 0.0),
+    ),
+    Water.case(
+        "a_view_of_a_floor_at_a_tenth_of_a_millimetre",
+        "looks that start behind what they should see",
+        SEEN,
+        1e-4,
+        |b| seen_error(b, 1e-4),
     ),
     Water.case(
         "floor_at_11000_metres",
@@ -240,6 +315,30 @@ pub(super) const CASES: &[Case] = &[
         |b| reference_error(b, focus(&[0.0, 90.0])),
     ),
 ];
+
+/// Worst pixel of the irradiance that a camera sees on the floor under flat water, relative to E cos θ T.
+fn seen_error(bench: &mut Bench<'_>, depth_m: f64) -> Result<f64, Failure> {
+    let scene = with(
+        pool(),
+        &[
+            ("/floor/depth_m", json!(depth_m)),
+            (
+                "/camera",
+                json!({ "position_m": [0, 2, 1.5], "target_m": [0, 0, 0] }),
+            ),
+            (
+                "/output",
+                json!({ "kind": "view", "width": 48, "height": 32, "format": "exr", "layers": ["radiance", "irradiance"] }),
+            ),
+        ],
+    );
+    let cos_i = 60_f64.to_radians().sin();
+    let due = cos_i * fresnel_transmittance(cos_i, 1.333);
+    let frame = bench.render(scene)?;
+    let seen = texels(&frame, LayerName::Irradiance);
+    let values = seen.as_flattened().iter();
+    Ok(values.map(|v| (v / due - 1.0).abs()).fold(0.0, worst))
+}
 
 fn mean(map: &[[f64; 3]]) -> f64 {
     let values = map.as_flattened();

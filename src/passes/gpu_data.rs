@@ -184,6 +184,17 @@ gpu_struct! {
 }
 
 gpu_struct! {
+    /// The uniform of `shaders/passes/unfollowed.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    Unfollowed = "Unfollowed" {
+        max_height_m: f32,
+        max_slope: f32,
+        least_step_m: f32,
+        floor_y_m: f32,
+    }
+}
+
+gpu_struct! {
     /// The uniform of `shaders/shared/view.wgsl`; fields are documented there.
     #[expect(missing_docs, reason = "documented in the WGSL twin")]
     View = "View" {
@@ -265,7 +276,7 @@ gpu_struct! {
 pub type Layout = (&'static str, usize, &'static [(&'static str, usize)]);
 
 /// Layouts of all shared structs.
-pub const LAYOUTS: [Layout; 14] = [
+pub const LAYOUTS: [Layout; 15] = [
     Light::LAYOUT,
     Split::LAYOUT,
     Receiver::LAYOUT,
@@ -276,6 +287,7 @@ pub const LAYOUTS: [Layout; 14] = [
     Estimate::LAYOUT,
     Resolve::LAYOUT,
     Span::LAYOUT,
+    Unfollowed::LAYOUT,
     View::LAYOUT,
     AirLight::LAYOUT,
     LevelMapView::LAYOUT,

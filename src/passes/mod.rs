@@ -28,13 +28,14 @@ pub mod slot;
 pub mod split;
 pub mod surface;
 pub mod term;
+pub mod unfollowed;
 pub mod volumetric;
 
 pub use desc::{Groups, PassDesc, Repeat, Step, Work};
 pub use slot::Slot;
 
 /// All passes in the order they run.
-pub const ALL: [&PassDesc; 17] = [
+pub const ALL: [&PassDesc; 18] = [
     &level_map::PASS,
     &level_map_pyramid::PASS,
     &surface::PASS,
@@ -45,6 +46,7 @@ pub const ALL: [&PassDesc; 17] = [
     &depth_profile::PASS,
     &planes::PASS,
     &volumetric::PASS,
+    &unfollowed::PASS,
     &landed::PASS,
     &irradiance::PASS,
     &coarse_irradiance::PASS,

@@ -37,6 +37,7 @@ pub fn embedded() -> ShaderSources {
         "passes/shade.wgsl",
         "passes/split.wgsl",
         "passes/surface.wgsl",
+        "passes/unfollowed.wgsl",
         "passes/volumetric.wgsl",
         "shared/account.wgsl",
         "shared/beam_triangle.wgsl",

@@ -28,7 +28,7 @@ pub const PLANE_LIST_HEAD_WORDS: u64 = 4;
 /// Texels along a side of the tiles that the list of planes knows the near planes of.
 pub const PLANE_TILE_TEXELS: u32 = 4;
 /// (low, high) pairs of the energy account, see `shaders/shared/flux.wgsl`.
-pub const ENERGY_TERMS: u64 = 16;
+pub const ENERGY_TERMS: u64 = 18;
 /// Bytes a frame holds besides its slots: the empty list, queue heads, arguments of indirect dispatches.
 pub const SUNDRY_BYTES: u64 = 256 + 32 + 12;
 /// Bytes per texel of the five textures that a level map is drawn into.

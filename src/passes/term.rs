@@ -18,3 +18,9 @@ pub const TORN: usize = 12;
 pub const TORN_COUNT: usize = 13;
 /// Flux of those that were halved less often than asked for, because the queue was full.
 pub const CUT: usize = 14;
+/// Flux of slopes that look away from the light: water in their shadow gets so much too much.
+pub const TURNED: usize = 15;
+/// Flux of beams that come out of the water again.
+pub const AGAIN: usize = 16;
+/// Flux of beams that start below the floor.
+pub const BARED: usize = 17;

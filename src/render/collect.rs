@@ -12,6 +12,7 @@ use crate::passes::slot::{ENERGY_TERMS, Slot};
 use crate::passes::{estimate, light, term};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
+use crate::scene::unfollowed;
 use crate::scene::{LayerName, Receiver};
 use crate::stats::{EnergyAccount, PlaneStats, Warning};
 
@@ -64,9 +65,66 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
                 ..Warning::new("beams_torn", torn_message(light.index, terms))
             });
         }
+        warnings.extend(not_followed(light.index, terms, &grey));
         accounts.push(account);
     }
     (accounts, warnings)
+}
+
+/// What took ways that are not followed, as far as it was counted.
+fn not_followed(light: u32, terms: &[u64], flux_w: &dyn Fn(usize) -> [f64; 3]) -> Vec<Warning> {
+    let share = |t: usize| 100.0 * terms[t] as f64 / (terms[term::EMITTED] as f64).max(1.0);
+    let measured = |term: usize, warning: Warning| {
+        (terms[term] > 0).then(|| Warning {
+            flux_w: Some(flux_w(term)),
+            pointer: Some(format!("/lights/{light}")),
+            ..warning
+        })
+    };
+    let turned = measured(term::TURNED, unfollowed::waves_shade_waves(light));
+    let again = measured(
+        term::AGAIN,
+        Warning::new(
+            "light_leaves_water_again",
+            format!(
+                "{:.3} % of the flux of light {light} meets steep waves a second time on its way; it is followed as if it stayed under water",
+                share(term::AGAIN)
+            ),
+        ),
+    );
+    let bared = measured(
+        term::BARED,
+        Warning::new(
+            "waves_bare_floor",
+            format!(
+                "{:.3} % of the flux of light {light} enters where troughs lie below the floor; it falls on the floor refracted, without a way through water",
+                share(term::BARED)
+            ),
+        ),
+    );
+    [turned, again, bared].into_iter().flatten().collect()
+}
+
+/// A light whose flux sums were done again.
+pub(super) fn widened(light: u32) -> Warning {
+    Warning {
+        pointer: Some(format!("/lights/{light}")),
+        ..Warning::new(
+            "sums_done_again",
+            format!(
+                "the light of light {light} is so concentrated that 32-bit sums of its flux overflowed; it was followed again with 64-bit sums, which takes longer and loses nothing"
+            ),
+        )
+    }
+}
+
+/// Puts what was seen in a frame to what was known before it: a warning that only a measurement can make sure of stays where the frame
+/// has seen nothing of the kind, and gives way to that of the frame where it has looked.
+pub(super) fn join_warnings(known: &mut Vec<Warning>, seen: Vec<Warning>, has_looked: bool) {
+    if has_looked {
+        known.retain(|warning| warning.code != unfollowed::WAVES_SHADE_WAVES);
+    }
+    known.extend(seen);
 }
 
 /// Code of the warning that scattered light is lost.

@@ -94,6 +94,7 @@ impl Renderer {
             self.build_level_maps(facts, &passes, missing, buffers, cancel, &mut time_ms)?;
         }
         let mut accounts = Vec::new();
+        let mut widened = Vec::new();
         let mut plane_counts: Vec<Vec<[u32; 4]>> = Vec::new();
         for light in 0..if of(Repeat::Light).is_empty() {
             0
@@ -101,6 +102,7 @@ impl Renderer {
             facts.lights.len()
         } {
             check_cancelled(cancel)?;
+            let reruns = self.wide_sum_reruns;
             accounts.extend(self.run_light(
                 facts,
                 light,
@@ -108,12 +110,16 @@ impl Renderer {
                 buffers,
                 &mut time_ms,
             )?);
+            if self.wide_sum_reruns > reruns {
+                widened.push(collect::widened(facts.lights[light].index));
+            }
             if let Some(buffer) = buffers.by_name.get(slot_name(Slot::PlaneCounts)) {
                 let bytes = Slot::PlaneCounts.bytes(facts);
                 plane_counts.push(readback::read(&self.gpu, buffer, bytes)?);
             }
         }
-        let (energy, warnings) = collect::energy(facts, &accounts);
+        let (energy, mut warnings) = collect::energy(facts, &accounts);
+        warnings.extend(widened);
         let estimate = of(Repeat::Frame);
         let accuracy = if estimate.is_empty() {
             None
@@ -214,10 +220,12 @@ impl Renderer {
         time_ms: &mut TimeStats,
     ) -> Result<Vec<[f32; 4]>, RenderError> {
         let coarse = facts.coarse();
+        // What only counts for the account tells nothing of the maps.
         let sums: Vec<&'static PassDesc> = light
             .iter()
             .copied()
             .filter(|pass| !pass.writes.contains(&Slot::Irradiance))
+            .filter(|pass| pass.name != passes::unfollowed::PASS.name)
             .collect();
         let lights = 0..coarse.lights.len();
         let mut wide_sums: Vec<bool> = lights

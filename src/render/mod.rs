@@ -272,7 +272,8 @@ impl Renderer {
             exposure: exposure(&facts, resolved),
             warnings: plan.warnings,
         };
-        stats.warnings.extend(run.warnings);
+        let has_looked = !stats.energy.is_empty();
+        collect::join_warnings(&mut stats.warnings, run.warnings, has_looked);
         collect::tell_scattered(&mut stats.warnings, &stats.energy);
         if let Some((_, chosen)) = tuned {
             stats.warnings.extend(tune::unmet(asked, &chosen));

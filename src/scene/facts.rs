@@ -9,6 +9,7 @@ use super::lamp_window;
 use super::placement::{LevelBox, ObjectFacts};
 use super::ranges::DEFAULT_MAP_SIDE;
 use super::source::{self, AirLight, Grid, Source};
+use super::unfollowed;
 use super::window::{self, Rect, Region};
 use super::{
     Camera, Issue, LayerName, Light, Output, Quality, Receiver, ResolvedScene, Scene, SceneError,
@@ -402,14 +403,7 @@ impl SceneFacts {
 
     /// Says where a cell of the water is too large for the shortest wave.
     fn warn_of_coarse_cells(&mut self) {
-        let waves = self
-            .surface
-            .components
-            .iter()
-            .filter(|c| c.amplitude_m > 0.0);
-        let shortest_m = waves
-            .map(|c| 1.0 / c.frequency_per_m.length())
-            .fold(f64::INFINITY, f64::min);
+        let shortest_m = self.surface.shortest_wave_m();
         let widest_m = self
             .lights
             .iter()
@@ -497,30 +491,9 @@ impl SceneFacts {
                 warning.pointer = Some(format!("/lights/{}", light.index));
                 self.warnings.push(warning);
             }
-            let looks_away = match light.source {
-                Source::Sun { to_light } => {
-                    let sideways = DVec2::new(to_light.x, to_light.z);
-                    self.surface.max_slope_along(sideways.normalize_or_zero()) * sideways.length()
-                        > to_light.y
-                }
-                Source::Point { position_m } => {
-                    let foot_m = DVec2::new(position_m.x, position_m.z);
-                    let farthest_m = (light.window.min - foot_m)
-                        .abs()
-                        .max((light.window.max - foot_m).abs())
-                        .length();
-                    self.surface.max_slope() * farthest_m
-                        > position_m.y - self.surface.max_height_m()
-                }
-                Source::Submerged { .. } => false,
-            };
-            if looks_away && self.surface.max_slope() > 0.0 {
-                let mut warning = Warning::new(
-                    "waves_shade_waves",
-                    "some wave slopes look away from the light; the shadows of waves on waves are not simulated",
-                );
-                warning.pointer = Some(format!("/lights/{}", light.index));
-                self.warnings.push(warning);
+            if unfollowed::looks_away(&self.surface, light) {
+                self.warnings
+                    .push(unfollowed::waves_shade_waves(light.index));
             }
         }
     }

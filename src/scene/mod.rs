@@ -23,6 +23,7 @@ pub mod resolve;
 pub mod source;
 mod strict;
 pub mod types;
+pub mod unfollowed;
 pub mod validate;
 mod validate_output;
 pub mod window;

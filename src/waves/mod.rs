@@ -118,6 +118,15 @@ impl WaterSurface {
             .sum()
     }
 
+    /// Length of the shortest wave, m; infinite for flat water.
+    pub fn shortest_wave_m(&self) -> f64 {
+        self.components
+            .iter()
+            .filter(|c| c.amplitude_m > 0.0)
+            .map(|c| 1.0 / c.frequency_per_m.length())
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// Slopes on the rim of all that the components can add up to, seen along `directions` evenly spaced directions: where the
     /// extreme tilts are. Empty for flat water.
     pub fn rim_slopes(&self, directions: u32) -> Vec<DVec2> {

@@ -51,7 +51,10 @@ fn terms_of_the_energy_account_agree() {
     agrees("TERM_TORN", term::TORN as f64);
     agrees("TERM_TORN_COUNT", term::TORN_COUNT as f64);
     agrees("TERM_CUT", term::CUT as f64);
-    assert!((term::CUT as u64) < slot::ENERGY_TERMS);
+    agrees("TERM_TURNED", term::TURNED as f64);
+    agrees("TERM_AGAIN", term::AGAIN as f64);
+    agrees("TERM_BARED", term::BARED as f64);
+    assert!((term::BARED as u64) < slot::ENERGY_TERMS);
 }
 
 #[test]
