@@ -19,13 +19,7 @@ const NO_FLOOR_M: f64 = -1e30;
 pub const PASS: PassDesc = PassDesc {
     name: "unfollowed",
     repeat: Repeat::Light,
-    reads: &[
-        Slot::Waves,
-        Slot::Surface,
-        Slot::Beams,
-        Slot::Hits,
-        Slot::Receivers,
-    ],
+    reads: &[Slot::Waves, Slot::Surface, Slot::Beams, Slot::Hits],
     reads_if_present: &[],
     writes: &[Slot::Energy],
     wanted: |facts| {

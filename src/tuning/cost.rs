@@ -58,6 +58,12 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
                 * edges(facts)
                 * (1.0 + waves + (facts.geometry_bytes as f64 / 64.0).max(1.0).log2())
         }
+        // Where rays are looked after, each goes through the waves some dozens of times.
+        "unfollowed" => {
+            let ways = facts.unfollowed_ways();
+            let steps = if ways.again || ways.bared { 32.0 } else { 0.0 };
+            cells * (2.0 + steps * (1.0 + waves))
+        }
         "landed" => texels * f64::from(facts.channels()),
         "irradiance" => texels,
         // All the light's passes with two fifths of the cells on the coarse maps, then its part of the places that are looked at.

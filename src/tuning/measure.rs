@@ -156,6 +156,15 @@ fn timed_scenes() -> Vec<Value> {
         value["output"]["height"] = json!(texels);
         all.push(value);
     }
+    // So steep that light comes out of the water again.
+    for cells in [64, 256] {
+        let mut value = scene_value(SINE_POOL);
+        value["quality"] = json!({ "water_cells": cells });
+        value["water"]["waves"] =
+            json!([{ "kind": "sine", "amplitude_m": 0.6, "wavelength_m": 1, "direction_deg": 20 }]);
+        value["floor"]["depth_m"] = json!(4);
+        all.push(value);
+    }
     for (boxes, cells, levels) in [
         (1, 64, 2),
         (1, 256, 4),

@@ -130,7 +130,15 @@ fn no_plan_is_left_without_its_scene() {
 
 #[test]
 fn a_full_scene_needs_every_pass() {
-    let plan = pool_with(&[("quality", json!({ "estimate_error": true }))]);
+    // Waves so steep that light comes out of the water again.
+    let steep = json!({
+        "waves": [{ "kind": "sine", "amplitude_m": 0.6, "wavelength_m": 1 }],
+        "absorption_per_m": [0.3, 0.1, 0.05]
+    });
+    let plan = pool_with(&[
+        ("quality", json!({ "estimate_error": true })),
+        ("water", steep),
+    ]);
     let all: Vec<&str> = passes::ALL.iter().map(|pass| pass.name).collect();
     let needed: Vec<&str> = all
         .into_iter()

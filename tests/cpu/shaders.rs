@@ -13,7 +13,7 @@ use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Va
 /// Storage buffers that every WebGPU device can bind to one stage.
 const BASELINE_STORAGE_BUFFERS: usize = 8;
 /// Uniform variables that steps bring along.
-const UNIFORMS: [&str; 10] = [
+const UNIFORMS: [&str; 11] = [
     "air_lights",
     "coarse_light",
     "estimate",
@@ -23,6 +23,7 @@ const UNIFORMS: [&str; 10] = [
     "resolve",
     "span",
     "split",
+    "unfollowed",
     "view",
 ];
 /// Textures that the executor draws into.
