@@ -11,7 +11,8 @@ pub(crate) struct Plant {
     pub(crate) to: &'static str,
     /// `cpu` or `gpu`: the tests in that folder of `tests`.
     pub(crate) binary: &'static str,
-    /// Tests that must fail, as `file::name`; one of them is enough.
+    /// Tests that must fail, as `file::name`; one of them is enough. Where they are hard cases, all of them must, and no other hard case
+    /// may.
     pub(crate) tests: &'static [&'static str],
     /// What it breaks, for people.
     pub(crate) what: &'static str,

@@ -61,7 +61,8 @@ pub(crate) fn page(
         );
     }
     page.push_str(
-        "\n## In Rust, against the tests\n\n| what | where | instead | caught by |\n|---|---|---|---|\n",
+        "\n## In Rust, against the tests\n\nThose that hard cases must notice were run against all of them: these turned red, and no other.\n\n\
+         | what | where | instead | caught by |\n|---|---|---|---|\n",
     );
     for (plant, outcome) in plants.iter().zip(outcomes) {
         let by = match outcome {

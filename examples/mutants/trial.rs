@@ -13,6 +13,9 @@ use super::tree::{self, Tree};
 /// Time after which tests are ended: a plant may make a loop endless.
 const LONGEST: Duration = Duration::from_secs(20 * 60);
 
+/// The tests of hard cases, a test each.
+const SUITE: &str = "hard_cases::";
+
 /// What came of a plant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
@@ -20,6 +23,8 @@ pub(crate) enum Outcome {
     Caught(Vec<String>),
     /// All tests passed.
     Survived,
+    /// Of the hard cases others failed than those that had to: these had to and did not, and these had not to and did.
+    Inexact(Vec<String>, Vec<String>),
     /// The tests ended without a verdict, or not at all.
     NoVerdict(String),
 }
@@ -36,6 +41,12 @@ impl fmt::Display for Outcome {
         match self {
             Self::Caught(tests) => write!(f, "caught by {}", tests.join(", ")),
             Self::Survived => write!(f, "SURVIVED"),
+            Self::Inexact(missing, stray) => write!(
+                f,
+                "NOT EXACT: [{}] did not fail, [{}] did",
+                missing.join(", "),
+                stray.join(", ")
+            ),
             Self::NoVerdict(why) => write!(f, "NO VERDICT: {why}"),
         }
     }
@@ -93,7 +104,7 @@ impl Workshop {
         Ok(program.ok_or_else(|| format!("error: cargo has built no tests `{binary}`")))
     }
 
-    /// Runs tests by their full names, with one plant awake.
+    /// Runs tests by their full names, with one plant awake. Where they are hard cases, all of those run, and no others may fail.
     pub(crate) fn run(
         &self,
         program: &Path,
@@ -105,9 +116,13 @@ impl Workshop {
         if let Some(number) = awake {
             command.env(tree::AWAKE, number.to_string());
         }
+        let is_suite = awake.is_some() && tests.iter().all(|test| test.starts_with(SUITE));
+        if is_suite {
+            command.arg(SUITE);
+        } else {
+            command.arg("--exact").args(tests);
+        }
         let mut child = command
-            .arg("--exact")
-            .args(tests)
             .current_dir(&self.root)
             .stdout(std::fs::File::create(&log)?)
             .stderr(Stdio::null())
@@ -126,7 +141,29 @@ impl Workshop {
             std::thread::sleep(Duration::from_millis(100));
         };
         let said = std::fs::read_to_string(&log)?;
-        Ok(verdict(&said, status.success(), tests))
+        let found = verdict(&said, status.success(), tests);
+        Ok(match found {
+            Outcome::Caught(_) if is_suite => exact(&said, tests),
+            other => other,
+        })
+    }
+}
+
+/// What the whole suite said, of which these had to fail.
+fn exact(said: &str, tests: &[&str]) -> Outcome {
+    let failed: Vec<&str> = said
+        .lines()
+        .filter_map(|line| line.strip_prefix("test ")?.strip_suffix(" ... FAILED"))
+        .collect();
+    let names = |all: &[&str], but: &[&str]| -> Vec<String> {
+        let left = all.iter().filter(|name| !but.contains(name));
+        left.map(|name| (*name).to_owned()).collect()
+    };
+    let (missing, stray) = (names(tests, &failed), names(&failed, tests));
+    if missing.is_empty() && stray.is_empty() {
+        Outcome::Caught(names(tests, &[]))
+    } else {
+        Outcome::Inexact(missing, stray)
     }
 }
 
