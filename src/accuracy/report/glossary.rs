@@ -32,7 +32,7 @@ pub(super) const GLOSSARY: [(&str, &str); 14] = [
     ),
     (
         "at shadow edges",
-        "share of the L1 error that lies within two texels of the edge of a mesh's shadow",
+        "share of the L1 error that lies within two texels (of a view: pixels) of the edge of a mesh's shadow",
     ),
     (
         "estimate",

@@ -109,7 +109,7 @@ fn heading(study: &Study) -> String {
     }
     if let Some(area) = truth.shadow_edge_area {
         text += &format!(
-            "- shadow edges: {} of the compared values lie within two texels of one\n",
+            "- shadow edges: {} of the compared values lie within two texels (of a view: pixels) of one\n",
             percent(area)
         );
     }
