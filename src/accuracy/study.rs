@@ -63,6 +63,10 @@ pub struct Sweep {
     /// times the truth's; absent where the dial is no number or fewer than two settings remain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<f64>,
+    /// Of a dial that counts halvings (`split_levels`), in place of an order: the factor by which the error falls per level, 0 included.
+    /// Fitted to the same settings.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factor_per_level: Option<f64>,
 }
 
 /// One setting of the dials.

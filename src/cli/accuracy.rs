@@ -199,6 +199,9 @@ pub fn in_words(study: &Study) -> String {
         if let Some(order) = sweep.order {
             text.push_str(&format!("{}: order {order:.2}\n", sweep.dial));
         }
+        if let Some(factor) = sweep.factor_per_level {
+            text.push_str(&format!("{}: error ÷ {factor:.2} per level\n", sweep.dial));
+        }
     }
     for warning in &study.warnings {
         text.push_str(&format!("warning: {}\n", warning.message));

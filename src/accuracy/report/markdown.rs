@@ -141,6 +141,12 @@ fn section(sweep: &Sweep, links: &SweepLinks) -> String {
     if let Some(order) = sweep.order {
         text += &format!("\nOrder of convergence: {}.\n", significant(order, 3));
     }
+    if let Some(factor) = sweep.factor_per_level {
+        text += &format!(
+            "\nThe error falls by a factor of {} per level.\n",
+            significant(factor, 3)
+        );
+    }
     let pictures = [
         ("Error over the dial", &links.convergence),
         ("Where each setting errs", &links.errors),
