@@ -75,7 +75,7 @@ pub struct AbsentPass {
 pub struct TimeStats {
     /// Waiting for the GPU thread.
     pub queue: f64,
-    /// Facts and plan.
+    /// Facts and plan; with `quality.target_error` or `quality.time_budget_ms` also choosing the dials, looks at the light included.
     pub plan: f64,
     /// Uploads and recording.
     pub upload: f64,
@@ -190,7 +190,7 @@ pub struct ChosenDials {
     pub split_levels: u32,
     /// Relative L1 error they are predicted to give.
     pub predicted_error: f64,
-    /// Time they are predicted to take, warm, ms.
+    /// Time that a frame is predicted to take with them, warm, ms; choosing is not in it.
     pub predicted_ms: f64,
     /// Whether what was asked for is predicted to be met; otherwise these are the best that can be had.
     pub meets: bool,

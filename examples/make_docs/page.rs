@@ -2,9 +2,12 @@
 
 use std::fmt::Write as _;
 
+use caustica::accuracy::order::level_number;
 use caustica::accuracy::report::conclusions;
 use caustica::accuracy::study::{Point, Study};
 use caustica::accuracy::words::{percent, significant};
+use caustica::scene::{Output, Quality};
+use caustica::tuning::ladder;
 
 use crate::scenes::Scene;
 use crate::wishes::Wish;
@@ -23,7 +26,7 @@ pub(crate) struct Chapter {
 /// All of `docs/accuracy.md`.
 pub(crate) fn write(chapters: &[Chapter]) -> String {
     let mut page = head(chapters);
-    page += &dials();
+    page += &dials(chapters);
     page += &wishes(chapters);
     page += &estimates(chapters);
     page += &orders(chapters);
@@ -60,8 +63,8 @@ fn head(chapters: &[Chapter]) -> String {
     )
 }
 
-fn dials() -> String {
-    "\n## Where to set the dials\n\n\
+fn dials(chapters: &[Chapter]) -> String {
+    let mut text = "\n## Where to set the dials\n\n\
      - Ask for what you want: `quality.target_error` picks the dials for an error, `quality.time_budget_ms` for a time. The table\n  \
        below shows what comes of it.\n\
      - **`water_cells`** is the dial that matters. Twice the cells cost two to four times the time and divide the error by about four.\n  \
@@ -69,11 +72,61 @@ fn dials() -> String {
        is how large a cell's light is where it lands.\n\
      - **`map_texels`** (views only) decides how sharp caustics are. Give the floor's map about as many texels as the picture has pixels\n  \
        across the floor; fewer blur, and no number of cells brings back what is blurred.\n\
-     - **`split_levels`** sharpens the shadows of meshes. 2 is right for most; each level more halves the error along the edges and\n  \
-       doubles the time for them. Without meshes it costs and changes nothing.\n\
+     - **`split_levels`** sharpens the shadows of meshes, each level more with less gain for more time"
+        .to_owned();
+    text += &levels(chapters);
+    text += "  Without meshes it costs and changes nothing.\n\
      - **`level_map_texels`** is the resolution of light *on* meshes. Their shadows hardly depend on it: edges are\n  \
-       found on the triangles themselves; only what is thinner than a texel may be missed.\n"
-        .to_owned()
+       found on the triangles themselves; only what is thinner than a texel may be missed.\n";
+    text
+}
+
+/// What each level of `split_levels` bought, and what the ladder takes.
+fn levels(chapters: &[Chapter]) -> String {
+    let mut text = String::new();
+    for (from, name) in ["first", "second", "third", "fourth"]
+        .into_iter()
+        .enumerate()
+    {
+        let mut gains = Vec::new();
+        let mut costs = Vec::new();
+        for sweep in chapters.iter().flat_map(|chapter| &chapter.study.sweeps) {
+            let at = |level: usize| {
+                let point = sweep
+                    .points
+                    .iter()
+                    .find(|point| level_number(sweep, point) == Some(level as f64))?;
+                let edges = point.error.relative_l1 * point.error.shadow_edge_share?;
+                Some((edges, point.cost.wall_ms.median))
+            };
+            if let (Some(before), Some(after)) = (at(from), at(from + 1)) {
+                gains.push(before.0 / after.0);
+                costs.push(after.1 / before.1);
+            }
+        }
+        if !gains.is_empty() {
+            let (before, what) = if text.is_empty() {
+                (":", "divided the error along the edges by")
+            } else {
+                (",", "by")
+            };
+            let _ = write!(
+                text,
+                "{before}\n  the {name} {what} {} in {} the time",
+                spread(&gains),
+                range(&costs)
+            );
+        }
+    }
+    let rung = |cells| ladder::rung(&Quality::default(), &Output::default(), cells).split_levels;
+    let _ = writeln!(
+        text,
+        ".\n  `target_error` takes {} with 256 cells, {} with 512 and {} with 1024.",
+        rung(256),
+        rung(512),
+        rung(1024)
+    );
+    text
 }
 
 /// The cheapest setting of the study that stays under an error.
@@ -129,14 +182,20 @@ fn wishes(chapters: &[Chapter]) -> String {
 
 /// "0.8 … 1.4 times".
 fn range(ratios: &[f64]) -> String {
+    format!("{} times", spread(ratios))
+}
+
+/// "0.8 … 1.4".
+fn spread(ratios: &[f64]) -> String {
     let low = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let high = ratios.iter().copied().fold(0.0, f64::max);
-    format!("{} … {} times", significant(low, 2), significant(high, 2))
+    format!("{} … {}", significant(low, 2), significant(high, 2))
 }
 
 fn estimates(chapters: &[Chapter]) -> String {
     let mut text = "\n## A frame's own estimate\n\n\
-        `quality.estimate_error` does the light once more with two fifths of the cells, a sixth of the work or less, and compares. Estimate over\n\
+        `quality.estimate_error` does the light once more with two fifths of the cells along a side, which is a sixth of their work, and\n\
+        with a quarter or a sixteenth of the floor's texels (all of them where their number does not halve), and compares. Estimate over\n\
         true error, over all settings below whose error is at least three times the truth's own:\n\n\
         | scene | settings | estimate ÷ true error |\n| --- | ---: | ---: |\n"
         .to_owned();
@@ -167,7 +226,8 @@ fn estimates(chapters: &[Chapter]) -> String {
 
 fn orders(chapters: &[Chapter]) -> String {
     let mut text = "\n## Orders of convergence\n\n\
-        The error falls as the dial to minus this power. Fitted to the settings whose error is at least three times the truth's own.\n\n\
+        The error falls as the dial to minus this power. Fitted to the settings whose error is at least three times the truth's own.\n\
+        `split_levels` counts halvings, so it has no order but a factor by which the whole error falls per level.\n\n\
         | scene | dial | order |\n| --- | --- | ---: |\n"
         .to_owned();
     for chapter in chapters {
@@ -179,6 +239,13 @@ fn orders(chapters: &[Chapter]) -> String {
                     chapter.scene.name, sweep.dial
                 );
             }
+            if let Some(factor) = sweep.factor_per_level {
+                let _ = writeln!(
+                    text,
+                    "| {} | {} | ÷ {factor:.2} per level |",
+                    chapter.scene.name, sweep.dial
+                );
+            }
         }
     }
     text += "\nBeams between exact rays, laid on texels by exact coverage, are second order in `water_cells`: where a cell's light is bent, the\n\
@@ -186,8 +253,9 @@ fn orders(chapters: &[Chapter]) -> String {
         know the waves. The rest is not second order, and cannot be:\n\n\
         - `map_texels` of a view: between its texels a map is a straight line, but caustics are edges, bright without bound on one side.\n  \
           What blur of width w takes from an edge that rises as 1/√x falls with the first power of w or less.\n\
-        - `split_levels`: a torn beam is booked by thirds, so the error is as wide as the beam and falls by half per level — first order in\n  \
-          the beam's size — until the rest of the map's error hides it.\n\
+        - `split_levels`: a torn beam is booked by thirds, so what lands in the wrong place is as wide as the beam, half as wide with each\n  \
+          level. That is only a part of the error: the table of shadow edges shows it fall until the cells' own error there is left, and\n  \
+          the whole error falls far less.\n\
         - `water_cells` of a view: the map's texels set a floor under it.\n\
         - flat water has no error to converge: what is left is single precision.\n";
     text
@@ -195,8 +263,9 @@ fn orders(chapters: &[Chapter]) -> String {
 
 fn shadow_edges(chapters: &[Chapter]) -> String {
     let mut text = "\n## Shadow edges\n\n\
-        The share of the error within two texels of a mesh's shadow edge. Beams that straddle receivers are halved only where they\n\
-        still do, so each level halves what is wrong along the edges.\n\n\
+        The share of the error within two texels (of a view: pixels) of a mesh's shadow edge. Beams that straddle receivers are halved\n\
+        only where they still do. Each level halves how far they reach across the edge; what the cells themselves do wrong there stays,\n\
+        so the gain ends after a few.\n\n\
         | scene | split_levels | L1 | of it at shadow edges | at shadow edges (L1) | rest (L1) | frame (ms) |\n\
         | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
         .to_owned();

@@ -217,7 +217,7 @@ fn sheet(
         sweeps: vec![Sweep {
             dial: "planes".to_owned(),
             points: PLANES.iter().zip(costs).map(point).collect(),
-            order: None,
+            ..Sweep::default()
         }],
         ..Study::default()
     };

@@ -46,7 +46,8 @@ pub struct TruthFigures {
     pub seconds: f64,
     /// Whether it was read from the disk.
     pub from_disk: bool,
-    /// Share of the compared values that lie within two texels of a mesh's shadow edge; absent where no mesh shades the map.
+    /// Share of the compared values that lie within two texels (of a view: pixels) of a mesh's shadow edge; absent where no mesh shades
+    /// the map.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shadow_edge_area: Option<f64>,
 }
@@ -62,6 +63,10 @@ pub struct Sweep {
     /// times the truth's; absent where the dial is no number or fewer than two settings remain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<f64>,
+    /// Of a dial that counts halvings (`split_levels`), in place of an order: the factor by which the error falls per level, 0 included.
+    /// Fitted to the same settings.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factor_per_level: Option<f64>,
 }
 
 /// One setting of the dials.
@@ -94,7 +99,7 @@ pub struct ErrorFigures {
     pub flip: f64,
     /// Mean distance in CIE Luv of the maps shown as pictures (Tipprasert 2006, eq. 2-9).
     pub luv_distance: f64,
-    /// Share of the L1 error within two texels of a mesh's shadow edge; absent where no mesh shades the map.
+    /// Share of the L1 error within two texels (of a view: pixels) of a mesh's shadow edge; absent where no mesh shades the map.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shadow_edge_share: Option<f64>,
     /// What the render itself estimated its relative L1 error to be.

@@ -12,7 +12,7 @@ use super::study::{
 };
 use crate::config::Limits;
 use crate::frame::Frame;
-use crate::reference::{Truth, TruthKind};
+use crate::reference::{ReferenceError, Truth, TruthKind, shadow_edge};
 use crate::scene::facts::SceneFacts;
 use crate::scene::{Issue, LayerName, Output, ResolvedScene, SceneError};
 use crate::stats::{Stats, Warning};
@@ -22,7 +22,7 @@ use crate::tuning::ladder;
 pub const MOST_SETTINGS: usize = 64;
 /// Most values (texels or pixels, all settings together) that a study holds.
 pub const MOST_COMPARED: usize = 32_000_000;
-/// Texels around a shadow's edge whose error is told apart.
+/// Texels, of a view pixels, around a shadow's edge whose error is told apart.
 pub const SHADOW_EDGE_TEXELS: u32 = 2;
 
 /// Timed runs after which a setting that takes long has been timed enough.
@@ -55,6 +55,9 @@ pub enum StudyError<E: std::error::Error> {
         "{0} values would have to be held (texels or pixels times settings); at most {MOST_COMPARED} are accepted"
     )]
     TooLarge(usize),
+    /// The shadows' edges cannot be found.
+    #[error("the shadows' edges cannot be found: {0}")]
+    Edges(#[from] ReferenceError),
     /// Images cannot be compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
@@ -108,7 +111,7 @@ pub fn run_study<E: std::error::Error>(
     if values > MOST_COMPARED {
         return Err(StudyError::TooLarge(values));
     }
-    let edge = truth.shadow_edge(SHADOW_EDGE_TEXELS);
+    let edge = shadow_edge(resolved, truth, SHADOW_EDGE_TEXELS)?;
     let mut study = Study {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         scene: name.to_owned(),

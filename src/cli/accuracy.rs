@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use tokio_util::sync::CancellationToken;
 
-use super::calibrate::bar;
 use super::error::CliError;
+use super::progress::Progress;
 use super::scene_file;
 use super::scene_flags::SceneArgs;
 use super::summary::columns;
@@ -67,8 +67,8 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
     // Before the truth, which may take minutes.
     sweep::check(resolved, &settings, limits).map_err(|error| refused(args, error))?;
     std::fs::create_dir_all(&args.output).map_err(|e| CliError::write(&args.output, e))?;
-    let progress = bar();
-    progress.set_message("the float64 truth");
+    let progress = Progress::new();
+    progress.say("the float64 truth");
     let truth_settings = TruthSettings {
         target_error: Some(args.truth_error),
         disk: config.truth_cache.clone().or_else(cache_folder),
@@ -77,7 +77,7 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
     let truth = truth(
         resolved,
         &truth_settings,
-        &|part| progress.set_position((1000.0 * part) as u64),
+        &|part| progress.at(part),
         &|| false,
     )
     .map_err(|error| no_truth(args, &error))?;
@@ -101,16 +101,18 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
         limits,
         &mut render,
         &mut |done, total, what| {
-            progress.set_position((1000 * done / total.max(1)) as u64);
-            progress.set_message(what.to_owned());
+            progress.at(done as f64 / total.max(1) as f64);
+            if done < total {
+                progress.say(&format!("{} of {total}: {what}", done + 1));
+            }
             true
         },
     )
     .map_err(|error| refused(args, error))?;
-    progress.set_message("tables and plots");
+    progress.say("tables and plots");
     let files = write_study(&args.output, &study, &images)
         .map_err(|error| CliError::Study(error.to_string()))?;
-    progress.finish_and_clear();
+    progress.finish();
     eprint!("{}", in_words(&study));
     for file in files {
         eprintln!("{}", file.display());
@@ -198,6 +200,9 @@ pub fn in_words(study: &Study) -> String {
     for sweep in &study.sweeps {
         if let Some(order) = sweep.order {
             text.push_str(&format!("{}: order {order:.2}\n", sweep.dial));
+        }
+        if let Some(factor) = sweep.factor_per_level {
+            text.push_str(&format!("{}: error ÷ {factor:.2} per level\n", sweep.dial));
         }
     }
     for warning in &study.warnings {

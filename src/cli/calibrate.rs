@@ -1,14 +1,13 @@
 //! `caustica calibrate`: measures what predictions of time and error rest on, on this machine.
 
-use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use tokio_util::sync::CancellationToken;
 
 use super::error::CliError;
 use super::files;
+use super::progress::Progress;
 use crate::config::RenderConfig;
 use crate::render::Renderer;
 use crate::tuning::measure::{self, MeasureError};
@@ -29,19 +28,19 @@ pub struct CalibrateArgs {
 pub fn run(args: &CalibrateArgs, config: &RenderConfig) -> Result<(), CliError> {
     files::check_place(&args.output)?;
     let mut renderer = Renderer::new(config)?;
-    let bar = bar();
+    let progress = Progress::new();
     let calibration = measure::calibration(
         &mut |scene| renderer.render(scene, &CancellationToken::new()),
         &|what, part| {
-            bar.set_message(what.to_owned());
-            bar.set_position((1000.0 * part) as u64);
+            progress.say(what);
+            progress.at(part);
         },
     )
     .map_err(|error| match error {
         MeasureError::Render(error) => CliError::Render(error),
         other => CliError::Study(other.to_string()),
     })?;
-    bar.finish_and_clear();
+    progress.finish();
     files::write_whole(&args.output, files::json(&calibration).as_bytes())?;
     eprintln!(
         "{}: {} passes on {}; true errors are at most {:.2} times the estimate\nuse it with --calibration {} or CAUSTICA_CALIBRATION",
@@ -52,14 +51,4 @@ pub fn run(args: &CalibrateArgs, config: &RenderConfig) -> Result<(), CliError> 
         args.output.display(),
     );
     Ok(())
-}
-
-/// A bar of a thousand steps on stderr, if a person looks at it.
-pub(super) fn bar() -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:40} {percent}% {msg}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(1000).with_style(style)
 }

@@ -7,8 +7,8 @@ use clap::{Args, Subcommand};
 use tokio_util::sync::CancellationToken;
 
 use super::accuracy::cache_folder;
-use super::calibrate::bar;
 use super::error::CliError;
+use super::progress::bar;
 use crate::config::RenderConfig;
 use crate::experiment::{self, ExperimentError, Settings};
 use crate::mesh::shapes;

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::calibrate::bar;
 use super::error::CliError;
 use super::files;
+use super::progress::bar;
 use super::summary::{adapter, columns};
 use crate::config::RenderConfig;
 use crate::hard_cases::{self, Case, Outcome, Settings, Truths, page};

@@ -17,6 +17,7 @@ pub mod hard_cases;
 pub mod health;
 pub mod picture;
 pub mod plan;
+mod progress;
 pub mod render;
 pub mod scene_file;
 pub mod scene_flags;

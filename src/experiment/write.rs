@@ -80,7 +80,7 @@ fn error_study(experiment: &Experiment, mesh: &MeshResult) -> Study {
     let sweep = |name: &str, points: Vec<Point>| Sweep {
         dial: name.to_owned(),
         points,
-        order: None,
+        ..Sweep::default()
     };
     let planes = |of: &dyn Fn(&super::PlanePoint) -> WayFigures| {
         mesh.planes

@@ -153,9 +153,10 @@ pub fn groups_of(compared: &[Compared]) -> u32 {
 }
 
 impl SceneFacts {
-    /// The same scene with two fifths of the water cells and, where that divides evenly, half the floor's texels along each side; a quarter
-    /// of them where those are still as many as the frame has water cells, because then only a few cells' light lies in a texel. A
-    /// sixth of the work, or less.
+    /// The same scene with two fifths of the water cells along each side and, where that divides evenly, half the floor's texels; a
+    /// quarter of them where those are still as many as the frame has water cells, because then only a few cells' light lies in a texel.
+    /// So it is a sixth of the cells' work, but of the texels' a sixteenth or a quarter, and all of it of meshes' maps and where the
+    /// floor's do not divide.
     ///
     /// Beams that straddle receivers are halved once less.
     ///

@@ -48,6 +48,7 @@ struct Ray {
 }
 
 /// A camera in its place.
+#[derive(Clone)]
 pub(super) struct Viewer<'a> {
     place: &'a Place,
     camera: &'a CameraFacts,

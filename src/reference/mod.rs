@@ -18,6 +18,7 @@
 //! - maps on objects: `object_rays`, the rays of one light that may strike an object; `object_map`, where they do;
 //! - views: `camera`, the points that pixels show; `patch`, the light through the water on one of them, searched from there; `shine`,
 //!   that of a point light under water, straight; `view`, all of them;
+//! - `shadow_edge`: which values lie near the edge of a shadow;
 //! - `closed_form` and `paraboloid`: scenes with a formula instead of rays.
 //!
 //! Model: suns are points at infinity; what a point light under water sends up to the surface ends there; waves do not shade each
@@ -42,6 +43,7 @@ mod place;
 mod refract;
 mod rings;
 mod settings;
+mod shadow_edge;
 mod shine;
 mod slanted;
 mod strata;
@@ -53,5 +55,6 @@ mod window;
 
 pub use map::{EnergyTerms, ReferenceMap, irradiance_map};
 pub use settings::{ReferenceError, ReferenceSettings, TruthSettings};
+pub use shadow_edge::shadow_edge;
 pub use truth::{Truth, TruthKind, truth};
 pub use window::{LightWindow, light_window};

@@ -53,34 +53,44 @@ pub struct Truth {
 
 impl Truth {
     /// Whether each value lies at most `reach` values (along x and y alike) from the edge of a shadow; `None` when no mesh casts
-    /// any. The edge runs between neighbours on both sides of a share of one half, and where the share is neither 0 nor 1.
+    /// any. Of a view with a `pixel_step` those are many pixels: see [`shadow_edge`](super::shadow_edge). The edge runs between neighbours on both sides of a share of one half, and where the share is neither 0 nor 1.
     pub fn shadow_edge(&self, reach: u32) -> Option<Vec<bool>> {
         let shadow = self.shadow.as_ref()?;
-        let (width, height) = (self.width as usize, self.height as usize);
-        let mut edge = vec![false; shadow.len()];
-        for y in 0..height {
-            for x in 0..width {
-                let at = y * width + x;
-                if !self.compared[at] {
-                    continue;
-                }
-                let (low, high) = HALF_DARK;
-                edge[at] |= shadow[at] > low && shadow[at] < high;
-                let right = (x + 1 < width).then_some(at + 1);
-                let below = (y + 1 < height).then_some(at + width);
-                for next in [right, below].into_iter().flatten() {
-                    if self.compared[next] && (shadow[at] > 0.5) != (shadow[next] > 0.5) {
-                        edge[at] = true;
-                        edge[next] = true;
-                    }
+        let size = [self.width as usize, self.height as usize];
+        Some(edge_of(shadow, &self.compared, size, reach))
+    }
+}
+
+/// [`Truth::shadow_edge`] of shares of shadow, where `compared` is true.
+pub(super) fn edge_of(
+    shadow: &[f64],
+    compared: &[bool],
+    [width, height]: [usize; 2],
+    reach: u32,
+) -> Vec<bool> {
+    let mut edge = vec![false; shadow.len()];
+    for y in 0..height {
+        for x in 0..width {
+            let at = y * width + x;
+            if !compared[at] {
+                continue;
+            }
+            let (low, high) = HALF_DARK;
+            edge[at] |= shadow[at] > low && shadow[at] < high;
+            let right = (x + 1 < width).then_some(at + 1);
+            let below = (y + 1 < height).then_some(at + width);
+            for next in [right, below].into_iter().flatten() {
+                if compared[next] && (shadow[at] > 0.5) != (shadow[next] > 0.5) {
+                    edge[at] = true;
+                    edge[next] = true;
                 }
             }
         }
-        let reach = reach as usize;
-        // First along x, then along y: a square around each value of the edge.
-        let wide = widen(&edge, reach, |at| (at % width, width), 1);
-        Some(widen(&wide, reach, |at| (at / width, height), width))
     }
+    let reach = reach as usize;
+    // First along x, then along y: a square around each value of the edge.
+    let wide = widen(&edge, reach, |at| (at % width, width), 1);
+    widen(&wide, reach, |at| (at / width, height), width)
 }
 
 /// True up to `reach` steps of `stride` around every true value; `place_of` tells where along the axis a value lies, and how

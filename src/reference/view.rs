@@ -17,6 +17,8 @@ use crate::scene::{Output, ResolvedScene};
 
 /// Rays per footprint of evenly lit water in the first round, each half.
 const FIRST_POINTS: f64 = 64.0;
+/// The same where only the share of shadow is asked for: in full light and in full shadow one ray tells as much as many.
+const SHADOW_POINTS: f64 = 16.0;
 /// Nearer than this a surface does not shade itself in the air, m.
 const OWN_M: f64 = 1e-7;
 
@@ -92,17 +94,6 @@ pub(super) fn view(
     }
     let counted = rounds(&place, &points, settings, progress, cancelled)?;
     let [a, b] = irradiance_halves(&points, &counted);
-    let shadow = |lit: &Option<Lit>, (halves, _): &Counted| {
-        let Some(lit) = lit else { return 0.0 };
-        let mut both = halves[0];
-        both.add(&halves[1]);
-        if lit.point.dry {
-            // The known light of a dry point has skies in it; what the others bring alone is asked for again.
-            let open = lights_in_air(&place, &lit.point).lit;
-            return share(lit.stopped.iter().sum(), open.iter().sum());
-        }
-        share(both.stopped.iter().sum(), both.lit.iter().sum())
-    };
     Ok(Truth {
         kind: TruthKind::View,
         width: grid.size[0],
@@ -117,12 +108,46 @@ pub(super) fn view(
             points
                 .iter()
                 .zip(&counted)
-                .map(|(p, c)| shadow(p, c))
+                .map(|(p, c)| p.as_ref().map_or(0.0, |lit| shadow(&place, lit, c)))
                 .collect()
         }),
         seconds: 0.0,
         from_disk: false,
     })
+}
+
+/// Share of shadow, 0 … 1, at some pixels; `None` where one sees nothing.
+pub(super) fn shadows(
+    resolved: &ResolvedScene,
+    pixels: &[[u32; 2]],
+) -> Result<Vec<Option<f64>>, ReferenceError> {
+    let place = Place::of(resolved)?;
+    let viewer = Viewer::of(&place)?;
+    let points: Vec<Option<Lit>> = pixels
+        .par_iter()
+        .map_init(
+            || viewer.clone(),
+            |viewer, &pixel| viewer.look(pixel).map(|point| lit(&place, point)),
+        )
+        .collect();
+    let counted = round(&place, &points, SHADOW_POINTS, &|| false, &|_| {});
+    Ok(points
+        .iter()
+        .zip(&counted)
+        .map(|(lit, counted)| lit.as_ref().map(|lit| shadow(&place, lit, counted)))
+        .collect())
+}
+
+/// Share of the light of lights on a point that meshes hold back.
+fn shadow(place: &Place, lit: &Lit, (halves, _): &Counted) -> f64 {
+    if lit.point.dry {
+        // The known light of a dry point has skies in it; what the others bring alone is asked for again.
+        let open = lights_in_air(place, &lit.point).lit;
+        return share(lit.stopped.iter().sum(), open.iter().sum());
+    }
+    let mut both = halves[0];
+    both.add(&halves[1]);
+    share(both.stopped.iter().sum(), both.lit.iter().sum())
 }
 
 fn lit(place: &Place, point: ViewPoint) -> Lit {

@@ -47,12 +47,13 @@ impl Renderer {
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
     }
 
+    /// Submits and waits; ms of this submission alone, which `time_ms` gets besides those of the pieces before it.
     pub(super) fn submit(
         &mut self,
         encoder: wgpu::CommandEncoder,
         started: Recording,
         time_ms: &mut TimeStats,
-    ) -> Result<(), GpuError> {
+    ) -> Result<f64, GpuError> {
         let commands = encoder.finish();
         // Passes that the host timed on the way, and pieces, are GPU time, not recording.
         time_ms.gpu += std::mem::take(&mut self.cutting.unaccounted_ms);
@@ -60,8 +61,9 @@ impl Renderer {
         let submitted = Instant::now();
         self.gpu.queue.submit([commands]);
         self.gpu.wait()?;
-        time_ms.gpu += ms_since(submitted);
-        Ok(())
+        let ms = ms_since(submitted);
+        time_ms.gpu += ms;
+        Ok(ms)
     }
 
     /// Where the host times passes: submits what is recorded, waits, and starts over with an empty encoder.

@@ -57,7 +57,8 @@ pub struct Quality {
     #[schema(minimum = 0.0001, maximum = 0.5)]
     pub target_error: Option<f64>,
     /// Time to stay under, ms, 0.1 … 3 600 000, on the machine that the calibration is of: the program then chooses the dials above
-    /// for the least error it predicts. Not with `target_error`. Default: absent.
+    /// for the least error it predicts. It is that of the frame; choosing comes on top: a look at the light with half the cells, in
+    /// `stats.time_ms.plan`. Not with `target_error`. Default: absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(minimum = 0.1, maximum = 3_600_000.0)]
     pub time_budget_ms: Option<f64>,

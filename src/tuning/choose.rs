@@ -7,8 +7,12 @@ const FIRST_LOOK: u32 = 64;
 /// Order at which a map's error is taken to fall with the cells. It is 2 once the cells know the waves, and 1.75 … 1.95 on the way
 /// there (docs/accuracy.md).
 const MAP_ORDER: f64 = 1.75;
-/// Errors above this say that the cells do not know the waves yet: nothing is foretold from them.
+/// Errors above this say that the cells do not know the waves yet: nothing is foretold from them, neither for more cells nor for fewer.
 const TRUSTED_BELOW: f64 = 0.06;
+/// The same of a view, whose error is mostly what its map's texels blur, and that is known earlier.
+const TRUSTED_BELOW_IN_VIEW: f64 = 0.12;
+/// What an error that is not trusted may truly be, times: with 64 cells looks saw down to 0.55 of it (docs/accuracy.md).
+const UNTRUSTED: f64 = 2.0;
 /// Least and largest order that is believed of a view: its map's texels blur, and what they blur is sharp.
 const VIEW_ORDER: (f64, f64) = (0.5, 2.0);
 /// Times the cells of a look beyond which its error is not extrapolated: another look comes first.
@@ -46,7 +50,8 @@ pub struct Prospect {
 /// The fewest cells that are predicted to stay under `target`.
 ///
 /// `look` renders the light with so many cells and returns its estimate of its own error, `None` where no light lands. From a look
-/// the rest follows, but not far: few cells know nothing of the finer waves.
+/// the rest follows, but not far: few cells know nothing of the finer waves, and say too little of their error. So they are doubled
+/// until the error is small enough to be believed, even where fewer would do.
 ///
 /// # Errors
 /// Those of `look`.
@@ -56,6 +61,11 @@ pub fn for_error<E>(
     mut look: impl FnMut(u32) -> Result<Option<f64>, E>,
 ) -> Result<Choice, E> {
     let most = prospect.most_cells.clamp(FEWEST_CELLS, MOST_CELLS);
+    let trusted_below = if prospect.is_view {
+        TRUSTED_BELOW_IN_VIEW
+    } else {
+        TRUSTED_BELOW
+    };
     let mut cells = FIRST_LOOK.min(most);
     let mut order = if prospect.is_view {
         VIEW_ORDER.1
@@ -85,18 +95,28 @@ pub fn for_error<E>(
             order
         };
         let needed = (f64::from(cells) * (error / target).powf(1.0 / falls)).ceil();
-        let known = if prospect.is_view {
-            looks > 1 || needed <= f64::from(cells)
-        } else {
-            error < TRUSTED_BELOW || needed <= f64::from(cells)
-        };
+        // Towards more cells a view's order has to be measured first.
+        let has_order = !prospect.is_view || looks > 1 || needed <= f64::from(cells);
+        let trusted = error < trusted_below && has_order;
         let near = needed <= FARTHEST * f64::from(cells);
-        if (known && near) || looks == MOST_LOOKS || 2 * cells > most {
+        let is_last = looks == MOST_LOOKS || cells == most;
+        if trusted && (near || is_last || 2 * cells > most) {
             let chosen = needed.clamp(f64::from(FEWEST_CELLS), f64::from(most)) as u32;
             return Ok(Choice {
                 cells: chosen,
                 predicted_error: error * (f64::from(cells) / f64::from(chosen)).powf(falls),
-                meets: needed <= f64::from(most) && (known || chosen <= cells),
+                meets: needed <= f64::from(most),
+                looks,
+            });
+        }
+        if is_last {
+            // Nothing to foretell from: what was looked at is enough even at twice the error, or only the most is sure to be nearest.
+            let at_worst = UNTRUSTED * error;
+            let meets = at_worst <= target;
+            return Ok(Choice {
+                cells: if meets { cells } else { most },
+                predicted_error: at_worst,
+                meets,
                 looks,
             });
         }

@@ -4,7 +4,7 @@
 use caustica::accuracy::display::{SHOWN_WHITE, display_linear, display_rgb};
 use caustica::accuracy::flip::flip;
 use caustica::accuracy::luv::{luv_distance, luv_from_linear_srgb};
-use caustica::accuracy::order::{TRUTH_MARGIN, dial_number, fit_order};
+use caustica::accuracy::order::{TRUTH_MARGIN, dial_number, fit_levels, fit_order};
 use caustica::accuracy::study::{ErrorFigures, LinearImage, Point, Study, Sweep};
 use caustica::accuracy::{MetricError, error_figures, fit_orders, mark_pareto_front};
 use serde_json::json;
@@ -323,7 +323,7 @@ fn sweep(dial: &str, points: &[(serde_json::Value, f64, f64)]) -> Sweep {
     Sweep {
         dial: dial.to_owned(),
         points: points.iter().map(point).collect(),
-        order: None,
+        ..Sweep::default()
     }
 }
 
@@ -356,6 +356,36 @@ fn the_order_leaves_out_what_the_truth_hides() {
     study.truth.relative_error = floor;
     fit_orders(&mut study);
     assert_eq!(study.sweeps[0].order, Some(fit.order));
+}
+
+#[test]
+fn a_dial_that_counts_halvings_has_a_factor_per_level() {
+    let law = |level: i32| 0.08 * 2.5_f64.powi(-level);
+    let floor = 1e-3;
+    let points = [0, 1, 2, 4].map(|level| (json!(level), law(level), 1.0));
+    let mut levels = sweep("split_levels", &points);
+    // Flattened by the truth's noise.
+    levels.points[3].error.relative_l1 = 2.9e-3;
+    let fit = fit_levels(&levels, floor).unwrap();
+    assert_eq!(fit.used, [true, true, true, false], "level 0 takes part");
+    assert!((fit.factor - 2.5).abs() < 1e-9, "{}", fit.factor);
+    assert!((fit.error_at(2.0) / law(2) - 1.0).abs() < 1e-9);
+    assert!(fit_order(&levels, floor).is_none(), "it has no order");
+    let beams = sweep("beams", &[(json!(1), 0.1, 1.0), (json!(2), 0.05, 1.0)]);
+    assert!(fit_levels(&beams, 0.0).is_none());
+
+    let mut study = Study {
+        sweeps: vec![levels, beams],
+        ..Study::default()
+    };
+    study.truth.relative_error = floor;
+    fit_orders(&mut study);
+    let found = |index: usize| {
+        let sweep: &Sweep = &study.sweeps[index];
+        (sweep.order.is_some(), sweep.factor_per_level)
+    };
+    assert_eq!(found(0), (false, Some(fit.factor)));
+    assert_eq!(found(1), (true, None));
 }
 
 #[test]

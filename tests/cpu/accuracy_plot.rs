@@ -1,5 +1,6 @@
 //! Plots: they hold what they should, in both formats, and refuse what cannot be drawn.
 
+use caustica::accuracy::fit_orders;
 use caustica::accuracy::plot::{Plot, PlotError, convergence, error_against_time};
 use caustica::accuracy::study::{Study, Sweep};
 use serde_json::json;
@@ -54,7 +55,7 @@ fn sweep(dial: &str, settings: &[(serde_json::Value, f64, f64)]) -> Sweep {
     Sweep {
         dial: dial.to_owned(),
         points: points.collect(),
-        order: None,
+        ..Sweep::default()
     }
 }
 
@@ -102,6 +103,17 @@ fn convergence_shows_the_order_it_was_made_with() {
         assert!(says(&plot, text), "no text `{text}`");
     }
     assert!(plot.svg.contains("The fit leaves out"));
+}
+
+#[test]
+fn halvings_show_their_factor_per_level() {
+    let levels = [0, 1, 2, 4].map(|level| (json!(level), 0.08 * 2.5_f64.powi(-level), 3.0));
+    let mut study = alone(sweep("split_levels", &levels), 1e-3);
+    fit_orders(&mut study);
+    let plot = convergence(&study, 0).unwrap();
+    check(&plot);
+    assert!(says(&plot, "fit: ÷ 2.5 per level"));
+    assert!(!plot.svg.contains("order"));
 }
 
 #[test]

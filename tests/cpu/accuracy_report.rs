@@ -223,7 +223,7 @@ fn said(points: &[(serde_json::Value, f64, f64)], truth_error: f64) -> String {
     study.sweeps = vec![Sweep {
         dial: "dial".to_owned(),
         points: points.collect(),
-        order: None,
+        ..Sweep::default()
     }];
     fit_orders(&mut study);
     conclusions(&study, &study.sweeps[0]).join(" ")
@@ -267,6 +267,26 @@ fn conclusions_follow_from_the_figures() {
     );
     let best = said(&[(json!("a"), 0.01, 4.0), (json!("b"), 0.005, 1.0)], 0.0);
     assert!(best.contains("b (0.5 %, 1 ms) is both"), "{best}");
+    let mut study = study();
+    let levels = [(0, 0.09), (1, 0.03), (2, 0.01)];
+    let levels = levels.map(|(level, error)| {
+        let mut point = point("split_levels", json!(level), 0.0, 1.0);
+        point.error.relative_l1 = error;
+        point
+    });
+    study.sweeps = vec![Sweep {
+        dial: "split_levels".to_owned(),
+        points: levels.to_vec(),
+        ..Sweep::default()
+    }];
+    fit_orders(&mut study);
+    let halved = conclusions(&study, &study.sweeps[0]).join(" ");
+    assert!(
+        halved.contains("Each level more divides the error by 3.") && !halved.contains("Order"),
+        "{halved}"
+    );
+    let report = to_markdown(&study, &ReportLinks::default());
+    assert!(report.contains("The error falls by a factor of 3 per level."));
     let one = said(&[(json!(3), 0.01, 4.0)], 0.0);
     assert!(one.contains("Only 3 (1 %, 4 ms) was measured."), "{one}");
 }

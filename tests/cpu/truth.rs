@@ -7,7 +7,8 @@ use caustica::physics::refraction::{direction_to_light, refract_direction};
 use caustica::physics::sky::{sky_irradiance, sky_path_factor};
 use caustica::reference::closed_form::flat_water_irradiance;
 use caustica::reference::{
-    ReferenceError, ReferenceSettings, Truth, TruthKind, TruthSettings, irradiance_map, truth,
+    ReferenceError, ReferenceSettings, Truth, TruthKind, TruthSettings, irradiance_map,
+    shadow_edge, truth,
 };
 use caustica::scene::{Light, ResolvedScene, Sun};
 use caustica::waves::WaterSurface;
@@ -564,4 +565,47 @@ fn shadow_edges_are_where_the_shadow_changes() {
     );
     truth.compared[10] = false;
     assert_eq!(picture(truth.shadow_edge(2).unwrap()), ["......."; 3]);
+}
+
+#[test]
+fn the_shadow_edges_of_a_view_are_found_at_all_its_pixels() {
+    let view = pool(Vec3::splat(0.1), |v| {
+        v["water"]["waves"] = waves();
+        v["camera"] = json!({ "kind": "orthographic", "position_m": [0, -1.2, 0], "target_m": [0, -1.5, 0], "up": [0, 0, -1], "height_m": 0.8 });
+        v["output"] = json!({ "kind": "view", "width": 60, "height": 60 });
+        v["objects"][0]["translation_m"] = json!([0.15, -1, 0]);
+    });
+    let look = |most_points| {
+        let settings = TruthSettings {
+            most_points,
+            ..settings(5e-2)
+        };
+        truth(&view, &settings, &|_| (), &|| false).unwrap()
+    };
+    let (all, some) = (look(3600), look(100));
+    assert_eq!((all.pixel_step, some.pixel_step), (1, 6));
+    assert_eq!(
+        shadow_edge(&view, &all, 2).unwrap(),
+        all.shadow_edge(2),
+        "every pixel is there already"
+    );
+    let wanted = all.shadow_edge(2).unwrap();
+    let wanted: Vec<bool> = (0..100)
+        .map(|at| [at % 10, at / 10].map(|n| 6 * n + some.first_pixel[0] as usize))
+        .map(|[x, y]| wanted[60 * y + x])
+        .collect();
+    let found = shadow_edge(&view, &some, 2).unwrap().unwrap();
+    let count = |edge: &[bool]| edge.iter().filter(|e| **e).count();
+    let differ = wanted.iter().zip(&found).filter(|(a, b)| a != b).count();
+    // Counted with other rays, which may say otherwise where a share is near a bound.
+    assert!(differ <= 2, "{differ} of {}", count(&wanted));
+    assert!(count(&wanted) >= 10, "the box casts a shadow");
+    // Two of its own values are 12 pixels.
+    let coarse = some.shadow_edge(2).unwrap();
+    assert!(
+        count(&coarse) > 2 * count(&found),
+        "{} {}",
+        count(&coarse),
+        count(&found)
+    );
 }

@@ -53,6 +53,106 @@ fn looks_stay_cheaper_than_the_frame() {
     assert_eq!(choice.looks as usize, looked.len());
 }
 
+/// Water cells, true error and estimate of a scene, as measured.
+type Measured = [(u32, f64, f64)];
+
+/// The floor of `steep_pool`.
+const STEEP_POOL: &Measured = &[
+    (16, 0.9, 0.25),
+    (32, 0.576, 0.233),
+    (64, 0.307, 0.169),
+    (128, 0.115, 0.0831),
+    (256, 0.0348, 0.0306),
+    (512, 0.00815, 0.0078),
+    (2048, 0.0005, 0.0005),
+];
+/// The floor of `teapot_floor`.
+const TEAPOT_FLOOR: &Measured = &[
+    (16, 0.6, 0.2),
+    (32, 0.337, 0.169),
+    (64, 0.142, 0.0888),
+    (96, 0.0759, 0.0556),
+    (128, 0.0467, 0.04),
+    (256, 0.0115, 0.0119),
+    (2048, 0.0002, 0.0002),
+];
+/// What the camera of `teapot_pool` sees; with few cells the coarse light knows no more of the waves than the fine.
+const TEAPOT_POOL: &Measured = &[
+    (16, 0.6, 0.15),
+    (32, 0.447, 0.203),
+    (64, 0.357, 0.216),
+    (128, 0.263, 0.168),
+    (256, 0.168, 0.116),
+    (512, 0.1, 0.0761),
+    (1024, 0.06, 0.0473),
+    (2048, 0.039, 0.03),
+];
+
+/// True error and estimate with so many cells, between what was measured.
+fn between(measured: &Measured, cells: u32) -> (f64, f64) {
+    let pair = measured
+        .windows(2)
+        .find(|pair| cells <= pair[1].0)
+        .expect("cells within the table");
+    let [(low, a, b), (high, c, d)] = [pair[0], pair[1]];
+    let log = |n: u32| f64::from(n).ln();
+    let part = (log(cells) - log(low)) / (log(high) - log(low));
+    let mix = |from: f64, to: f64| (from.ln() + part * (to / from).ln()).exp();
+    (mix(a, c), mix(b, d))
+}
+
+#[test]
+fn coarse_looks_that_see_too_little_of_their_error_are_not_believed() {
+    for (measured, is_view, targets) in [
+        (STEEP_POOL, false, [0.5, 0.25, 0.12, 0.06, 0.01]),
+        (TEAPOT_FLOOR, false, [0.5, 0.25, 0.12, 0.06, 0.01]),
+        (TEAPOT_POOL, true, [0.5, 0.35, 0.25, 0.12, 0.06]),
+    ] {
+        for target in targets {
+            let prospect = Prospect {
+                margin: 1.34,
+                is_view,
+                ..map(2048)
+            };
+            let look = |cells| Ok::<_, Infallible>(Some(between(measured, cells).1));
+            let choice = choose::for_error(target, &prospect, look).unwrap();
+            let (error, _) = between(measured, choice.cells);
+            assert!(choice.meets, "{target}: {choice:?}");
+            assert!(error <= target, "{target}: {error} with {choice:?}");
+            // Not for any price: fewer than half as many would not do.
+            let (half, _) = between(measured, (choice.cells / 2).max(16));
+            assert!(
+                half > 0.45 * target,
+                "{target}: {half} with half of {choice:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_never_trusted_promises_only_what_is_safe() {
+    for (target, most, expected) in [
+        // Even twice the error stays under the target: what was looked at will do, no fewer.
+        (0.5, 2048, (1024, true, 5)),
+        (0.47, 2048, (2048, false, 5)),
+        (0.5, 100, (100, true, 2)),
+        (0.12, 100, (100, false, 2)),
+        (0.12, 40, (40, false, 1)),
+    ] {
+        for is_view in [false, true] {
+            let prospect = Prospect {
+                is_view,
+                ..map(most)
+            };
+            let stubborn = |_| Ok::<_, Infallible>(Some(0.2));
+            let choice = choose::for_error(target, &prospect, stubborn).unwrap();
+            let found = (choice.cells, choice.meets, choice.looks);
+            assert_eq!(found, expected, "{target}, {most}: {choice:?}");
+            assert_eq!(choice.predicted_error <= target, choice.meets, "{choice:?}");
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_met_is_said_with_the_best_there_is() {
     let choice = choose::for_error(1e-4, &map(256), scene(0.04, 2.0)).unwrap();

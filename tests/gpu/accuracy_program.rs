@@ -42,6 +42,15 @@ fn a_study_is_written_and_its_truth_kept() {
     for line in ["water_cells 16", "water_cells 32", "study.md"] {
         assert!(text.contains(line), "{line} in {text}");
     }
+    // No terminal looks: a line for each step, before anything is found.
+    let steps: Vec<&str> = text.lines().take(4).collect();
+    let expected = [
+        "the float64 truth",
+        "1 of 2: water_cells = 16",
+        "2 of 2: water_cells = 32",
+        "tables and plots",
+    ];
+    assert_eq!(steps, expected, "{text}");
     for file in ["study.md", "study.json", "study.csv"] {
         assert!(out.join(file).is_file(), "{file} of {text}");
     }

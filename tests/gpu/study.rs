@@ -90,7 +90,8 @@ fn cells_converge_at_second_order_and_cost_more() {
     assert!((1.7..=2.4).contains(&order), "{order}");
     for point in points {
         let ratio = point.error.estimated.unwrap() / point.error.relative_l1;
-        assert!((0.4..=2.0).contains(&ratio), "{point:?}");
+        println!("estimate ÷ true error {ratio:.2}");
+        assert!((0.5..=2.0).contains(&ratio), "{point:?}");
         assert!(point.error.shadow_edge_share.is_none(), "there is no mesh");
         assert_eq!(point.cost.runs, 2);
         assert!(
@@ -211,6 +212,18 @@ fn a_view_is_compared_at_its_pixels() {
         points[0].error.shadow_edge_share.is_some(),
         "the teapot has a shadow"
     );
+    // The truth has every 4th pixel; its edges are those of the picture, not of such a coarse one.
+    assert!(truth.pixel_step > 1);
+    let coarse = truth.shadow_edge(2).unwrap();
+    let coarse = coarse
+        .iter()
+        .zip(&truth.compared)
+        .filter(|(e, c)| **e && **c);
+    let compared = truth.compared.iter().filter(|c| **c).count();
+    let coarse = coarse.count() as f64 / compared as f64;
+    let area = study.truth.shadow_edge_area.unwrap();
+    println!("{area:.3} of the pixels near edges, {coarse:.3} as values");
+    assert!(area > 0.005 && area < 0.6 * coarse, "{area} {coarse}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! A focus so strong that narrow flux sums wrap: the sun is followed again with wide ones, and nothing is lost.
 
+use caustica::accuracy::metrics::relative_l1;
 use serde_json::{Value, json};
 
 use super::harness::{Map, renderer};
@@ -69,4 +70,34 @@ fn an_even_floor_needs_no_wide_sums() {
     let (map, reruns) = map_and_reruns(scene);
     assert!(map.closure() <= 1e-5);
     assert_eq!(reruns, 0);
+}
+
+#[test]
+fn a_coarse_light_that_overflows_narrow_sums_is_done_again() {
+    // Texels so small that two fifths of the cells on half the texels wrap too.
+    let estimating = |side: u32, cells: u32| {
+        let mut scene = focus(side, cells);
+        scene["quality"]["estimate_error"] = json!(true);
+        map_and_reruns(scene)
+    };
+    let (map, reruns) = estimating(1024, 512);
+    let (_, fine_reruns) = map_and_reruns(focus(1024, 512));
+    let estimated = map
+        .stats
+        .accuracy
+        .as_ref()
+        .unwrap()
+        .estimated_error
+        .unwrap();
+    assert_eq!(fine_reruns, 1);
+    assert_eq!(reruns, 2, "the light and its coarse one, each once");
+    // Twice the cells are four times as near to the truth, so three quarters of the error lie between.
+    let (finer, _) = map_and_reruns(focus(1024, 1024));
+    let between = relative_l1(map.values(), finer.values()).unwrap();
+    println!(
+        "estimated {estimated:.2e}, {:.2e} by twice the cells",
+        between / 0.75
+    );
+    let ratio = estimated / (between / 0.75);
+    assert!((0.4..=2.5).contains(&ratio), "{ratio}");
 }

@@ -74,7 +74,7 @@ pub(crate) fn study() -> Study {
     let sweep = |dial: &str, points: &[Point]| Sweep {
         dial: dial.to_owned(),
         points: points.to_vec(),
-        order: None,
+        ..Sweep::default()
     };
     let mut study = Study {
         version: "0.1.0".to_owned(),

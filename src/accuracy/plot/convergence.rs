@@ -15,13 +15,15 @@ use super::marker;
 use super::output::{Drawing, Plot, render};
 use super::palette::{self, REFERENCE, SOFT_INK};
 use super::series::{Mark, marks, moved_remark, subtitle};
-use crate::accuracy::order::{OrderFit, TRUTH_MARGIN, fit_order};
+use crate::accuracy::order::{
+    LevelFit, OrderFit, TRUTH_MARGIN, fit_levels, fit_order, level_number,
+};
 use crate::accuracy::study::{Study, Sweep};
 use crate::accuracy::words::significant;
 
 /// Draws the relative L1 error of one sweep over its dial. For a dial that is a number: logarithmic axis, the fitted power
-/// law with its order, the slopes of order 1 and 2 for comparison. For words, switches and several dials: side by side. The
-/// truth's own error is dashed; what the renders estimated themselves is hollow.
+/// law with its order, the slopes of order 1 and 2 for comparison. For words, switches and several dials: side by side. For a dial that
+/// counts halvings: the fitted factor per level. The truth's own error is dashed; what the renders estimated themselves is hollow.
 ///
 /// # Errors
 ///
@@ -51,6 +53,7 @@ pub fn convergence(study: &Study, sweep_index: usize) -> Result<Plot, PlotError>
         x: DialAxis::new(&marks),
         y: error_axis(&errors),
         fit: fit_order(sweep, truth_error),
+        levels: fit_levels(sweep, truth_error),
         marks,
     })
 }
@@ -86,6 +89,7 @@ struct Convergence<'a> {
     x: DialAxis,
     y: LogAxis,
     fit: Option<OrderFit>,
+    levels: Option<LevelFit>,
     marks: Vec<Mark>,
 }
 
@@ -99,6 +103,7 @@ impl Drawing for Convergence<'_> {
         self.draw_slopes(canvas)?;
         draw_floor(canvas, &self.y, self.study.truth.relative_error)?;
         self.draw_fit(canvas)?;
+        self.draw_levels(canvas)?;
         for (index, mark) in self.marks.iter().enumerate() {
             let x = self.x.at(index, mark);
             if let Some(estimated) = mark.estimated {
@@ -244,6 +249,31 @@ impl Convergence<'_> {
         canvas.text(&text, (middle.0 - 10.0, middle.1 + 12.0), look)
     }
 
+    /// The law of a factor per level, from setting to setting: they need not be evenly spaced.
+    fn draw_levels<DB: DrawingBackend>(
+        &self,
+        canvas: &mut Canvas<'_, DB>,
+    ) -> Result<(), PlotError> {
+        let Some(fit) = &self.levels else {
+            return Ok(());
+        };
+        let points = self.sweep.points.iter().enumerate().zip(&self.marks);
+        let mut spots: Vec<Spot> = points
+            .filter(|((index, _), _)| fit.used[*index])
+            .filter_map(|((index, point), mark)| {
+                let level = level_number(self.sweep, point)?;
+                Some((self.x.at(index, mark), self.y.at(fit.error_at(level))))
+            })
+            .collect();
+        spots.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for pair in spots.windows(2) {
+            if let Some((from, to)) = clipped(pair[0], pair[1]) {
+                canvas.line(from, to, self.fit_stroke())?;
+            }
+        }
+        Ok(())
+    }
+
     fn fit_stroke(&self) -> Stroke {
         Stroke {
             colour: self.colour(),
@@ -304,6 +334,12 @@ impl Convergence<'_> {
                 text: "orders 1 and 2, for comparison".to_owned(),
             });
         }
+        if let Some(levels) = &self.levels {
+            entries.push(Entry {
+                sign: Sign::Line(self.fit_stroke()),
+                text: format!("fit: ÷ {} per level", significant(levels.factor, 3)),
+            });
+        }
         if self.study.truth.relative_error > 0.0 {
             entries.push(Entry {
                 sign: Sign::Dashed(floor_stroke()),
@@ -315,10 +351,16 @@ impl Convergence<'_> {
 
     fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
-        let left_out = self
-            .fit
-            .as_ref()
-            .map_or(0, |fit| fit.used.iter().filter(|used| !**used).count());
+        let fits = [
+            self.fit.as_ref().map(|fit| &fit.used),
+            self.levels.as_ref().map(|fit| &fit.used),
+        ];
+        let left_out = fits
+            .into_iter()
+            .flatten()
+            .flatten()
+            .filter(|used| !**used)
+            .count();
         if left_out > 0 {
             remarks.push(format!(
                 "The fit leaves out {left_out} of {} settings: their error is less than {TRUTH_MARGIN} times the truth's own.",

@@ -26,6 +26,9 @@ pub fn conclusions(study: &Study, sweep: &Sweep) -> Vec<String> {
     if let Some(order) = sweep.order {
         sentences.push(of_order(order));
     }
+    if let Some(factor) = sweep.factor_per_level {
+        sentences.push(format!("Each level more {}.", effect_of(factor)));
+    }
     sentences.push(of_front(sweep));
     sentences
 }
@@ -102,15 +105,22 @@ fn described(sweep: &Sweep, point: &Point) -> String {
 }
 
 fn of_order(order: f64) -> String {
-    let factor = 2f64.powf(order);
-    let effect = if factor > SAME {
+    format!(
+        "Order {}: twice the dial {}.",
+        significant(order, 3),
+        effect_of(order.exp2())
+    )
+}
+
+/// What a step does that divides the error by `factor`.
+fn effect_of(factor: f64) -> String {
+    if factor > SAME {
         format!("divides the error by {}", significant(factor, 2))
     } else if factor < 1.0 / SAME {
         format!("multiplies the error by {}", significant(1.0 / factor, 2))
     } else {
         "leaves the error as it is".to_owned()
-    };
-    format!("Order {}: twice the dial {effect}.", significant(order, 3))
+    }
 }
 
 fn of_front(sweep: &Sweep) -> String {

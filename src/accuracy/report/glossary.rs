@@ -32,7 +32,7 @@ pub(super) const GLOSSARY: [(&str, &str); 14] = [
     ),
     (
         "at shadow edges",
-        "share of the L1 error that lies within two texels of the edge of a mesh's shadow",
+        "share of the L1 error that lies within two texels (of a view: pixels) of the edge of a mesh's shadow",
     ),
     (
         "estimate",
@@ -48,7 +48,7 @@ pub(super) const GLOSSARY: [(&str, &str); 14] = [
     ),
     (
         "order",
-        "n, when the error falls as the dial to the power −n: with order 2, twice the dial means a quarter of the error",
+        "n, when the error falls as the dial to the power −n: with order 2, twice the dial means a quarter of the error; a dial that counts halvings has a factor per level instead",
     ),
     (
         "Pareto front (★)",

@@ -109,7 +109,7 @@ fn heading(study: &Study) -> String {
     }
     if let Some(area) = truth.shadow_edge_area {
         text += &format!(
-            "- shadow edges: {} of the compared values lie within two texels of one\n",
+            "- shadow edges: {} of the compared values lie within two texels (of a view: pixels) of one\n",
             percent(area)
         );
     }
@@ -140,6 +140,12 @@ fn section(sweep: &Sweep, links: &SweepLinks) -> String {
     text += &figures(sweep);
     if let Some(order) = sweep.order {
         text += &format!("\nOrder of convergence: {}.\n", significant(order, 3));
+    }
+    if let Some(factor) = sweep.factor_per_level {
+        text += &format!(
+            "\nThe error falls by a factor of {} per level.\n",
+            significant(factor, 3)
+        );
     }
     let pictures = [
         ("Error over the dial", &links.convergence),

@@ -273,7 +273,9 @@ fn refused(error: StudyError<JobError>) -> ApiError {
             )],
         }
         .into(),
-        StudyError::Metric(_) | StudyError::NothingLeft(_) => ApiError::NoTruth(error.to_string()),
+        StudyError::Metric(_) | StudyError::Edges(_) | StudyError::NothingLeft(_) => {
+            ApiError::NoTruth(error.to_string())
+        }
     }
 }
 
