@@ -94,7 +94,6 @@ pub struct Case {
 
 impl Case {
     /// The same case, known to fail.
-    #[expect(dead_code, reason = "at present no case is known to fail")]
     pub(super) const fn known_to_fail(mut self, why: &'static str) -> Self {
         self.known_failure = Some(why);
         self

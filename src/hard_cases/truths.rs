@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
 use serde_json::{Value, json};
 
 use super::bench::Bench;
 use super::case::Failure;
 use crate::accuracy::metrics;
+use crate::physics::refraction::normal_from_slope;
 use crate::reference::closed_form::flat_water_irradiance;
-use crate::reference::{ReferenceSettings, irradiance_map};
-use crate::scene::Light;
+use crate::reference::{ReferenceSettings, TruthSettings, irradiance_map, truth};
+use crate::scene::{LayerName, Light, ResolvedScene};
 
 /// Reference maps that were computed already, by the hashes of their scenes: the same cases run again need no second one.
 #[derive(Debug, Default)]
@@ -43,6 +45,22 @@ pub(super) fn waves() -> Value {
     ])
 }
 
+/// Height of [`waves`] at local (x, z), m, and their unit normal there.
+pub(super) fn waves_at(x_m: f64, z_m: f64) -> (f64, DVec3) {
+    let (mut height_m, mut slope_x, mut slope_z) = (0.0, 0.0, 0.0);
+    for wave in waves().as_array().into_iter().flatten() {
+        let of = |field: &str| wave[field].as_f64().unwrap_or_default();
+        let (sin, cos) = of("direction_deg").to_radians().sin_cos();
+        let turns = (x_m * cos + z_m * sin) / of("wavelength_m") + of("phase_deg") / 360.0;
+        let (rise, run) = (std::f64::consts::TAU * turns).sin_cos();
+        height_m += of("amplitude_m") * rise;
+        let slope = of("amplitude_m") * std::f64::consts::TAU / of("wavelength_m") * run;
+        slope_x += slope * cos;
+        slope_z += slope * sin;
+    }
+    (height_m, normal_from_slope(slope_x, slope_z))
+}
+
 /// [`pool`] with other values at some JSON pointers; what is not there is added.
 pub(super) fn with(mut scene: Value, changes: &[(&str, Value)]) -> Value {
     for (pointer, value) in changes {
@@ -58,22 +76,28 @@ pub(super) fn with(mut scene: Value, changes: &[(&str, Value)]) -> Value {
     scene
 }
 
+/// Irradiance of all suns together under flat water, so deep, W/m².
+pub(super) fn flat_irradiance(resolved: &ResolvedScene, depth_m: f64) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for light in &resolved.scene.lights {
+        if let Light::Sun(sun) = light {
+            let one = flat_water_irradiance(&resolved.scene.water, depth_m, sun);
+            for (sum, value) in sum.iter_mut().zip(one) {
+                *sum += value;
+            }
+        }
+    }
+    sum
+}
+
 /// Largest relative error of a map under flat water against the closed form, all suns together. Where no light is due, any is an
 /// error of 1.
 pub(super) fn flat_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
     let resolved = bench.scene(scene)?;
     let depth_m = resolved.scene.floor.as_ref().map_or(0.0, |f| f.depth_m);
-    let mut truth = [0.0; 3];
-    for light in &resolved.scene.lights {
-        if let Light::Sun(sun) = light {
-            let one = flat_water_irradiance(&resolved.scene.water, depth_m, sun);
-            for (sum, value) in truth.iter_mut().zip(one) {
-                *sum += value;
-            }
-        }
-    }
+    let truth = flat_irradiance(&resolved, depth_m);
     let frame = bench.render_resolved(&resolved)?;
-    let texels = super::bench::texels(&frame, crate::scene::LayerName::Irradiance);
+    let texels = super::bench::texels(&frame, LayerName::Irradiance);
     Ok(texels
         .iter()
         .flat_map(|texel| texel.iter().zip(truth))
@@ -102,10 +126,37 @@ pub(super) fn reference_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64
         bench.truths.0.insert(hash.clone(), truth.irradiance);
     }
     let frame = bench.render_resolved(&resolved)?;
-    let found = super::bench::texels(&frame, crate::scene::LayerName::Irradiance);
+    let found = super::bench::texels(&frame, LayerName::Irradiance);
     let truth = &bench.truths.0[&hash];
     metrics::relative_l1(found.as_flattened(), truth.as_flattened())
         .map_err(|error| Failure::Check(error.to_string()))
+}
+
+/// Relative L1 error of the irradiance of what a view shows against the reference, over the pixels that the reference looks at; 1
+/// where any of them sees nothing.
+pub(super) fn seen_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
+    let resolved = bench.scene(scene)?;
+    let settings = TruthSettings {
+        target_error: Some(2e-3),
+        max_rays: 40_000_000,
+        most_points: 200,
+        disk: None,
+    };
+    let truth = truth(&resolved, &settings, &|_| {}, &|| false)
+        .map_err(|error| Failure::Check(format!("no reference: {error}")))?;
+    let frame = bench.render_resolved(&resolved)?;
+    if truth.compared.contains(&false) {
+        return Ok(1.0);
+    }
+    let seen = super::bench::texels(&frame, LayerName::Irradiance);
+    let found: Vec<[f64; 3]> = (0..truth.width * truth.height)
+        .map(|at| {
+            let x = truth.first_pixel[0] + at % truth.width * truth.pixel_step;
+            let y = truth.first_pixel[1] + at / truth.width * truth.pixel_step;
+            seen[(y * frame.width + x) as usize]
+        })
+        .collect();
+    relative_l1(&found, &truth.irradiance)
 }
 
 /// Largest difference of two maps as a share of the mean of the second.
