@@ -114,7 +114,14 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         file: "shared/geometry.wgsl",
         from: "if determinant == 0.0 { return vec3f(-1.0); }",
         to: "if determinant <= 0.0 { return vec3f(-1.0); }",
-        red: Red::Only(&["mixed_winding"]),
+        red: Red::Only(&[
+            "needle_triangles",
+            "mixed_winding",
+            "an_open_box",
+            "three_sheets_on_an_edge",
+            "around_the_camera",
+            "detail_of_a_centimetre_a_thousand_kilometres_out",
+        ]),
         what: "triangles have one side",
     },
     ShaderPlant {
