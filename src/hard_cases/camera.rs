@@ -307,12 +307,12 @@ impl Clear {
         } else if is_dry {
             Some(self.sky)
         } else {
-            self.from_water(direction)
+            self.down_in_water(direction)
         }
     }
 
     /// Radiance along a ray that goes down from the camera in the water.
-    fn from_water(&self, direction: DVec3) -> Option<[f64; 3]> {
+    fn down_in_water(&self, direction: DVec3) -> Option<[f64; 3]> {
         let on = self.on_floor(self.eye, direction)?;
         Some(self.floor.map(|l| on * l))
     }
@@ -383,6 +383,6 @@ fn on_a_wave(bench: &mut Bench<'_>, above_m: f64) -> Result<f64, Failure> {
     let dry = clear.error(&found, |ray| {
         clear.at_surface(clear.eye, ray, normal, clear.ior)
     })?;
-    let wet = clear.error(&found, |ray| clear.from_water(ray))?;
+    let wet = clear.error(&found, |ray| clear.down_in_water(ray))?;
     Ok(dry.min(wet))
 }

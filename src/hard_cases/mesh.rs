@@ -175,7 +175,7 @@ pub(super) const CASES: &[Case] = &[
         "around_the_camera",
         "rays that start within a mesh",
         "relative L1 of the irradiance seen against the reference",
-        0.02,
+        0.01,
         |b| {
             let scene = with(
                 at(&cuboid([3.0, 3.0, 3.0]), 0.0),
