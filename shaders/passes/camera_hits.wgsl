@@ -54,13 +54,20 @@ fn meet_water(ray: Ray, side: f32, t_max: f32) -> f32 {
     }
     let rate = abs(d.y) + view.max_slope * length(d.xz);
     if rate <= 0.0 { return -1.0; }
+    // A ray that starts at a wave and leaves it has not met it yet.
+    var leaves = false;
+    if t == 0.0 {
+        let slope = water_surface_at(ray.origin.xz, view.wave_count).yz;
+        leaves = side * (d.y - dot(slope, d.xz)) > 0.0;
+    }
     var t_before = t;
     var f_before = max(side * over_water(ray.origin + d * t), 0.0);
     for (var i = 0u; i < MARCH_STEPS; i++) {
         if t > t_max { return -1.0; }
         let p = ray.origin + d * t;
         let f = side * over_water(p);
-        if f <= SURFACE_TOLERANCE_M {
+        leaves = leaves && abs(f) <= SURFACE_TOLERANCE_M;
+        if f <= SURFACE_TOLERANCE_M && !leaves {
             if f < -SURFACE_TOLERANCE_M && f_before > 0.0 { return close_bracket(ray, side, t_before, f_before, t, f); }
             return t;
         }

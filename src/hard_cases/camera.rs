@@ -50,8 +50,7 @@ pub(super) const CASES: &[Case] = &[
             let under = on_a_wave(b, -1e-6)?;
             Ok([on, over, under].into_iter().fold(0.0, worst))
         },
-    )
-    .known_to_fail("up to 20 µm under a wave rays that leave the surface are taken to cross it"),
+    ),
     Camera.case(
         "along_its_own_up",
         "a basis without a right",
