@@ -258,7 +258,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         what: "shares are divided by the footprint's area where it has none",
     },
     ShaderPlant {
-        family: "camera",
+        family: "water",
         file: "passes/camera_hits.wgsl",
         from: "const START_M: f32 = -2.0 * SURFACE_TOLERANCE_M;",
         to: "const START_M: f32 = 1e-4;",

@@ -36,13 +36,13 @@ pub(super) const CASES: &[Case] = &[
         0.01,
         ripples,
     ),
-    Water.case("slopes_of_1", AGAIN, REFERENCE, 0.05, |b| {
+    Water.case("slopes_of_1", AGAIN, REFERENCE, 0.01, |b| {
         reference_error(b, steep(1.0))
     }),
-    Water.case("slopes_of_5", AGAIN, REFERENCE, 0.08, |b| {
+    Water.case("slopes_of_5", AGAIN, REFERENCE, 0.03, |b| {
         reference_error(b, steep(5.0))
     }),
-    Water.case("slopes_of_20", AGAIN, REFERENCE, 0.2, |b| {
+    Water.case("slopes_of_20", AGAIN, REFERENCE, 0.1, |b| {
         reference_error(b, steep(20.0))
     }),
     Water.case(
