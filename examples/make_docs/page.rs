@@ -77,7 +77,7 @@ fn dials(chapters: &[Chapter]) -> String {
     text += &levels(chapters);
     text += "  Without meshes it costs and changes nothing.\n\
      - **`level_map_texels`** is the resolution of light *on* meshes. Their shadows hardly depend on it: edges are\n  \
-       found on the triangles themselves; only what is thinner than a texel may be missed.\n";
+       found on the triangles themselves; but what is thinner than a texel lets light through.\n";
     text
 }
 
@@ -142,7 +142,7 @@ fn cheapest(study: &Study, target: f64) -> Option<&Point> {
 fn wishes(chapters: &[Chapter]) -> String {
     let mut text = "\n## Asking for an error\n\n\
         What `quality.target_error` chose, what the error then truly was, and what the frame cost beside the cheapest setting of the\n\
-        sweeps below that stays under the target. *Choosing* is what the looks with few cells cost on top, once.\n\n\
+        sweeps below that stays under the target. *Choosing* is what the looks cost on top, once.\n\n\
         | scene | asked | cells chosen | true error | kept | frame (ms) | cheapest of the sweeps (ms) | ratio | choosing (ms) |\n\
         | --- | ---: | ---: | ---: | :---: | ---: | ---: | ---: | ---: |\n"
         .to_owned();

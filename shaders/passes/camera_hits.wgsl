@@ -76,7 +76,8 @@ fn meet_water(ray: Ray, side: f32, t_max: f32) -> f32 {
         f_before = f;
         t += max(f / rate, SURFACE_TOLERANCE_M);
     }
-    return t;
+    // One that still runs along the wave it started at goes away from it.
+    return select(t, -1.0, leaves);
 }
 
 fn close_bracket(ray: Ray, side: f32, t_0: f32, f_0: f32, t_1: f32, f_1: f32) -> f32 {

@@ -26,8 +26,8 @@ const ORDER: f64 = 2.0;
 /// The comparison is of texels twice as long, on which errors of the size of a texel cancel: the true error is this much larger.
 /// Measured against the float64 reference; see docs/accuracy.md.
 const HIDDEN: f64 = 1.6;
-/// The same of texels four times as long, about as long as the water cells. Measured beside texels twice as long, at 64 cells: their
-/// difference is 1.20 (reef) … 1.39 (teapot_floor) times as large.
+/// The same of texels four times as long, which are as long as the water cells or shorter. At 64 cells and 256 texels the difference
+/// is 1.20 (reef) … 1.39 (teapot_floor) times larger of texels twice as long than of these.
 const HIDDEN_BY_QUARTERS: f64 = 2.1;
 /// The same of a view, whose map has half the texels too: what they blur falls more slowly than second order has it.
 const HIDDEN_IN_VIEW: f64 = 1.36;

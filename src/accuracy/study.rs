@@ -60,7 +60,7 @@ pub struct Sweep {
     /// What was measured at each setting.
     pub points: Vec<Point>,
     /// Order of convergence: the error falls as the dial to minus this power. Fitted to the settings whose error is at least three
-    /// times the truth's; absent where the dial is no number or fewer than two settings remain.
+    /// times the truth's; absent where the dial is no number or counts halvings, or fewer than two settings remain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<f64>,
     /// Of a dial that counts halvings (`split_levels`), in place of an order: the factor by which the error falls per level, 0 included.

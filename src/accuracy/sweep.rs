@@ -57,7 +57,7 @@ pub enum StudyError<E: std::error::Error> {
     TooLarge(usize),
     /// The shadows' edges cannot be found.
     #[error("the shadows' edges cannot be found: {0}")]
-    Edges(#[from] ReferenceError),
+    Edges(ReferenceError),
     /// Images cannot be compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
@@ -111,7 +111,13 @@ pub fn run_study<E: std::error::Error>(
     if values > MOST_COMPARED {
         return Err(StudyError::TooLarge(values));
     }
-    let edge = shadow_edge(resolved, truth, SHADOW_EDGE_TEXELS)?;
+    let edge = shadow_edge(resolved, truth, SHADOW_EDGE_TEXELS, &mut || {
+        progress(0, total, "the edges of shadows")
+    })
+    .map_err(|error| match error {
+        ReferenceError::Cancelled => StudyError::Cancelled,
+        other => StudyError::Edges(other),
+    })?;
     let mut study = Study {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         scene: name.to_owned(),

@@ -5,17 +5,23 @@ use super::view::shadows;
 use super::{ReferenceError, Truth};
 use crate::scene::{Output, ResolvedScene};
 
+/// Pixels that are looked at between two questions whether to go on.
+const PIXELS_AT_ONCE: usize = 16_384;
+
 /// Whether each value of a truth lies at most `reach` texels, of a view pixels (along x and y alike), from the edge of a shadow;
 /// `None` when no mesh casts any.
 ///
 /// A view whose truth leaves pixels out is looked at again, at all pixels around those that are in it.
 ///
+/// `go_on` is asked now and then whether somebody still waits.
+///
 /// # Errors
-/// What cannot be counted.
+/// What cannot be counted; [`ReferenceError::Cancelled`].
 pub fn shadow_edge(
     resolved: &ResolvedScene,
     truth: &Truth,
     reach: u32,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Vec<bool>>, ReferenceError> {
     let Output::View(output) = &resolved.scene.output else {
         return Ok(truth.shadow_edge(reach));
@@ -47,9 +53,14 @@ pub fn shadow_edge(
         .collect();
     // 2. Their shadow; where nothing is seen is no edge.
     let mut shadow = vec![0.0; near.len()];
-    for (&pixel, share) in pixels.iter().zip(shadows(resolved, &pixels)?) {
-        near[place_of(pixel)] = share.is_some();
-        shadow[place_of(pixel)] = share.unwrap_or(0.0);
+    for some in pixels.chunks(PIXELS_AT_ONCE) {
+        if !go_on() {
+            return Err(ReferenceError::Cancelled);
+        }
+        for (&pixel, share) in some.iter().zip(shadows(resolved, some)?) {
+            near[place_of(pixel)] = share.is_some();
+            shadow[place_of(pixel)] = share.unwrap_or(0.0);
+        }
     }
     // 3. The edge, and of it what the truth has.
     let edge = edge_of(&shadow, &near, [width as usize, height as usize], reach);

@@ -1,4 +1,4 @@
-//! Asking for accuracy or time instead of dials: looks at the scene with few cells, and chooses.
+//! Asking for accuracy or time instead of dials: looks at the scene's light, and chooses.
 
 use tokio_util::sync::CancellationToken;
 
@@ -45,12 +45,12 @@ impl Renderer {
         })?;
         let reason = if choice.meets {
             format!(
-                "{} looks with few cells: the fewest that are predicted to stay under {target}",
+                "{} looks at the light: the fewest cells that are predicted to stay under {target}",
                 choice.looks
             )
         } else {
             format!(
-                "{} looks: no number of cells is predicted to stay under {target}; these come nearest",
+                "{} looks at the light: no number of cells is sure to stay under {target}; these are predicted to come nearest",
                 choice.looks
             )
         };

@@ -52,7 +52,8 @@ pub struct Quality {
     #[schema(minimum = 0, maximum = 8)]
     pub split_levels: u32,
     /// Relative L1 error of the irradiance to stay under, 0.0001 … 0.5: the program then chooses the dials above itself, and those
-    /// that are given do not count (`stats.accuracy.chosen` has what they became). Not with `time_budget_ms`. Default: absent.
+    /// that are given do not count (`stats.accuracy.chosen` has what they became). Choosing looks at the light, with ever more cells
+    /// until what they see can be believed, and comes on top (`stats.time_ms.plan`). Not with `time_budget_ms`. Default: absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(minimum = 0.0001, maximum = 0.5)]
     pub target_error: Option<f64>,

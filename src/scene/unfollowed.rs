@@ -57,6 +57,10 @@ fn may_leave_again(surface: &WaterSurface, light: &LightFacts, ior: f64) -> bool
     let rim = surface.rim_slopes(SLOPES);
     let to_lights = match light.source {
         Source::Sun { to_light } => vec![to_light],
+        // Between waves rays may come from anywhere, also from below.
+        Source::Point { position_m } if position_m.y <= surface.max_height_m() => {
+            return surface.max_slope() > 0.0;
+        }
         Source::Point { position_m } => {
             let window = light.window;
             let near = DVec2::new(position_m.x, position_m.z).clamp(window.min, window.max);

@@ -81,7 +81,8 @@ impl Calibration {
             file: file.to_owned(),
             reason,
         };
-        let read: Self = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        let mut read: Self =
+            serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
         if read.form != FORM {
             return Err(wrong(format!("its form is {}, not {FORM}", read.form)));
         }
@@ -98,6 +99,13 @@ impl Calibration {
             .chain([read.frame_ms]);
         if let Some(figure) = figures.find(|figure| !(0.0..=1e9).contains(figure)) {
             return Err(wrong(format!("{figure} is no time")));
+        }
+        drop(figures);
+        // Files from before a pass was there: a guess is nearer than nothing.
+        let built_in: Self =
+            serde_json::from_str(BUILT_IN).map_err(|error| wrong(error.to_string()))?;
+        for (pass, rate) in built_in.passes {
+            read.passes.entry(pass).or_insert(rate);
         }
         Ok(read)
     }

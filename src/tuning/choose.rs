@@ -113,9 +113,10 @@ pub fn for_error<E>(
             // Nothing to foretell from: what was looked at is enough even at twice the error, or only the most is sure to be nearest.
             let at_worst = UNTRUSTED * error;
             let meets = at_worst <= target;
+            let chosen = if meets { cells } else { most };
             return Ok(Choice {
-                cells: if meets { cells } else { most },
-                predicted_error: at_worst,
+                cells: chosen,
+                predicted_error: foretold(at_worst, cells, chosen, prospect.is_view),
                 meets,
                 looks,
             });

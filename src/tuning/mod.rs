@@ -1,7 +1,7 @@
 //! From a wanted error or time to dials.
 //!
 //! - `ladder`: the dials as one family, each rung in balance;
-//! - `choose`: which rung a wanted error needs, from looks at the scene with few cells;
+//! - `choose`: which rung a wanted error needs, from looks at its light;
 //! - `cost`: what a plan will take, pass by pass;
 //! - `calibration`: the figures behind both for one machine, which `caustica calibrate` measures anew (`measure`).
 //!

@@ -585,7 +585,7 @@ fn the_shadow_edges_of_a_view_are_found_at_all_its_pixels() {
     let (all, some) = (look(3600), look(100));
     assert_eq!((all.pixel_step, some.pixel_step), (1, 6));
     assert_eq!(
-        shadow_edge(&view, &all, 2).unwrap(),
+        shadow_edge(&view, &all, 2, &mut || true).unwrap(),
         all.shadow_edge(2),
         "every pixel is there already"
     );
@@ -594,7 +594,11 @@ fn the_shadow_edges_of_a_view_are_found_at_all_its_pixels() {
         .map(|at| [at % 10, at / 10].map(|n| 6 * n + some.first_pixel[0] as usize))
         .map(|[x, y]| wanted[60 * y + x])
         .collect();
-    let found = shadow_edge(&view, &some, 2).unwrap().unwrap();
+    let found = shadow_edge(&view, &some, 2, &mut || true).unwrap().unwrap();
+    assert_eq!(
+        shadow_edge(&view, &some, 2, &mut || false),
+        Err(ReferenceError::Cancelled)
+    );
     let count = |edge: &[bool]| edge.iter().filter(|e| **e).count();
     let differ = wanted.iter().zip(&found).filter(|(a, b)| a != b).count();
     // Counted with other rays, which may say otherwise where a share is near a bound.

@@ -53,7 +53,7 @@ fn looks_stay_cheaper_than_the_frame() {
     assert_eq!(choice.looks as usize, looked.len());
 }
 
-/// Water cells, true error and estimate of a scene, as measured.
+/// Water cells, true error and estimate of a scene, as measured; the outermost rows go on from there.
 type Measured = [(u32, f64, f64)];
 
 /// The floor of `steep_pool`.

@@ -15,7 +15,7 @@ use crate::scene::Scene;
 /// Plans a scene.
 ///
 /// The plan knows what is cached now, so a plan after a render may be shorter. Where `quality` asks for an error or a time, the
-/// scene is looked at with few cells; else nothing runs.
+/// scene's light is looked at; else nothing runs.
 #[utoipa::path(
     post, path = "/v1/plan", tag = "render",
     request_body(content = Scene, description = "The scene.", example = example_scene),
