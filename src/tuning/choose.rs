@@ -110,13 +110,13 @@ pub fn for_error<E>(
             });
         }
         if is_last {
-            // Nothing to foretell from: what was looked at is enough even at twice the error, or only the most is sure to be nearest.
+            // Nothing to foretell from: what was looked at is enough even at twice the error, or only the most is sure to be nearest. It
+            // is no worse than what was looked at; that it is better is not promised.
             let at_worst = UNTRUSTED * error;
             let meets = at_worst <= target;
-            let chosen = if meets { cells } else { most };
             return Ok(Choice {
-                cells: chosen,
-                predicted_error: foretold(at_worst, cells, chosen, prospect.is_view),
+                cells: if meets { cells } else { most },
+                predicted_error: at_worst,
                 meets,
                 looks,
             });
