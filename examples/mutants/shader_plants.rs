@@ -206,6 +206,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
             "slopes_of_20",
             "footprints_of_a_hundred_thousand_texels",
             "footprints_of_millions_of_texels",
+            "light_that_leaves_the_water_again",
         ]),
         what: "the third edge of a wide footprint counts against its texels",
     },
