@@ -246,6 +246,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
             "a_point_focus_on_the_floor",
             "sums_beyond_32_bits",
             "one_column_of_8192_pixels",
+            "every_corner_on_a_texel_corner",
         ]),
         what: "shares are divided by the footprint's area where it has none",
     },
