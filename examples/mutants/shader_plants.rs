@@ -274,6 +274,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         red: Red::Only(&[
             "a_micrometre_over_the_surface",
             "on_the_surface",
+            "on_a_wave",
             "a_field_of_view_of_a_tenth_of_a_degree",
             "a_field_of_view_of_179_degrees",
             "one_column_of_8192_pixels",
