@@ -221,8 +221,8 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     ShaderPlant {
         family: "water",
         file: "passes/unfollowed.wgsl",
-        from: "max(-0.5 * dot(cross(ac, ab), light.source.xyz), 0.0)",
-        to: "max(-0.25 * dot(cross(ac, ab), light.source.xyz), 0.0)",
+        from: "note_unfollowed(TERM_TURNED, -signed_unit_flux(",
+        to: "note_unfollowed(TERM_TURNED, -0.5 * signed_unit_flux(",
         red: Red::Only(&["slopes_that_look_away"]),
         what: "half of what looks away is told of",
     },
@@ -251,7 +251,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         what: "shares are divided by the footprint's area where it has none",
     },
     ShaderPlant {
-        family: "water",
+        family: "camera",
         file: "passes/camera_hits.wgsl",
         from: "const START_M: f32 = -2.0 * SURFACE_TOLERANCE_M;",
         to: "const START_M: f32 = 1e-4;",

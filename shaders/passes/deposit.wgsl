@@ -10,6 +10,7 @@
 #import "shared/deposit_share.wgsl"
 #import "shared/footprint.wgsl"
 #import "shared/wide_footprint.wgsl"
+#import "shared/beam.wgsl"
 #import "shared/beam_triangle.wgsl"
 #import "shared/unit_flux.wgsl"
 #import "shared/grid.wgsl"

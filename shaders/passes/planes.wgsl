@@ -14,6 +14,7 @@
 #import "shared/flux.wgsl"
 #import "shared/footprint.wgsl"
 #import "shared/wide_footprint.wgsl"
+#import "shared/beam.wgsl"
 #import "shared/beam_triangle.wgsl"
 #import "shared/unit_flux.wgsl"
 #import "shared/grid.wgsl"

@@ -5,18 +5,13 @@
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
 #import "lib/attenuation.wgsl"
-#import "lib/coverage.wgsl"
 #import "lib/octahedral.wgsl"
 #import "lib/solid_angle.wgsl"
 #import "shared/light.wgsl"
 #import "shared/entry.wgsl"
 #import "shared/water_surface.wgsl"
-#import "shared/receivers.wgsl"
 #import "shared/flux.wgsl"
-#import "shared/floor_distance.wgsl"
-#import "shared/deposit_share.wgsl"
-#import "shared/footprint.wgsl"
-#import "shared/beam_triangle.wgsl"
+#import "shared/beam.wgsl"
 #import "shared/unit_flux.wgsl"
 #import "shared/grid.wgsl"
 #import "shared/grid_rays.wgsl"
@@ -49,14 +44,6 @@ fn meets_water_again(origin: vec3f, direction: vec3f, t_end: f32) -> bool {
     return true;
 }
 
-// What `triangle_unit_flux` leaves out: the flux of a triangle that looks away.
-fn turned_unit_flux(origin: mat3x3f) -> f32 {
-    let ab = origin[1] - origin[0];
-    let ac = origin[2] - origin[0];
-    if light.kind == SUN { return max(-0.5 * dot(cross(ac, ab), light.source.xyz), 0.0); }
-    return max(-solid_angle(origin[0] - light.source.xyz, ab, ac), 0.0);
-}
-
 fn note_unfollowed(term: u32, unit_flux: f32) {
     if unit_flux > 0.0 { add_energy(term, unit_flux * light.energy_scale); }
 }
@@ -69,7 +56,7 @@ fn unfollowed_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocatio
     var t_end = 0.0;
     for (var half = 0u; half < 2u; half++) {
         let b = grid_beam(cell, half);
-        note_unfollowed(TERM_TURNED, turned_unit_flux(b.origin));
+        note_unfollowed(TERM_TURNED, -signed_unit_flux(b.origin, b.direction));
         transmitted += b.transmitted;
         t_end = max(t_end, max(b.t.x, max(b.t.y, b.t.z)));
     }

@@ -1,14 +1,4 @@
-// A beam: the triangle of water it comes through and the rays under its corners.
-
-struct Beam {
-    unit_flux: f32,      // what falls on the triangle from a light of unit power, see triangle_unit_flux()
-    transmitted: f32,    // what of it goes under water
-    origin: mat3x3f,     // where the rays start, local m
-    direction: mat3x3f,  // unit directions under them
-    uv: mat3x2f,         // where they end, texels of the receiver's map
-    t: vec3f,            // path lengths, m
-    receiver: vec3i,
-}
+// What becomes of a beam on its receiver.
 
 fn target_of(r: Receiver) -> Target {
     return Target(r.map_offset, i32(r.map_width), i32(r.map_height), light.channels, light.flux_scale);

@@ -1,13 +1,18 @@
 // Flux that a light of unit power sends through a triangle of the grid.
 
 // Of a sun the area that the water shows it, m² (under 1 W/m²); of a point light the solid angle, sr (at 1 W/sr): exact however
-// near it is. 0 where the water looks away.
-fn triangle_unit_flux(origin: mat3x3f, direction: mat3x3f) -> f32 {
+// near it is. Below 0 where the water looks away.
+fn signed_unit_flux(origin: mat3x3f, direction: mat3x3f) -> f32 {
     if light.kind == SUBMERGED {
-        return max(solid_angle(direction[0], direction[1] - direction[0], direction[2] - direction[0]), 0.0);
+        return solid_angle(direction[0], direction[1] - direction[0], direction[2] - direction[0]);
     }
     let ab = origin[1] - origin[0];
     let ac = origin[2] - origin[0];
-    if light.kind == SUN { return max(0.5 * dot(cross(ac, ab), light.source.xyz), 0.0); }
-    return max(solid_angle(origin[0] - light.source.xyz, ab, ac), 0.0);
+    if light.kind == SUN { return 0.5 * dot(cross(ac, ab), light.source.xyz); }
+    return solid_angle(origin[0] - light.source.xyz, ab, ac);
+}
+
+// The same where the water faces the light, else 0.
+fn triangle_unit_flux(origin: mat3x3f, direction: mat3x3f) -> f32 {
+    return max(signed_unit_flux(origin, direction), 0.0);
 }

@@ -97,7 +97,7 @@ pub fn in_words(outcomes: &[Outcome]) -> String {
                 .to_owned(),
                 outcome.case.family.name().to_owned(),
                 outcome.case.name.to_owned(),
-                format!("{figure} of {:.0e}", outcome.case.bound),
+                format!("{figure} of {:e}", outcome.case.bound),
                 outcome.failure.clone().unwrap_or_default(),
             ]
         })

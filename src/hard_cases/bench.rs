@@ -229,6 +229,12 @@ const OF_FLUX: [&str; 8] = [
     "waves_shade_waves",
 ];
 
+/// Flux of the first channel that the warnings of this kind tell of, W.
+pub(super) fn told_w(frame: &Frame, code: &str) -> f64 {
+    let warnings = frame.stats.warnings.iter().filter(|w| w.code == code);
+    warnings.filter_map(|w| Some(w.flux_w?[0])).sum()
+}
+
 /// What the accounts list as lost or only roughly placed, and no warning tells; or a warning about flux that does not say how much.
 fn unsaid(stats: &Stats) -> Option<String> {
     let told = |code: &str| {

@@ -44,12 +44,25 @@ pub(super) const CASES: &[Case] = &[
         "worst pixel against ρE/π through the wave's surface and the sky by it, or against ρE/π from the water",
         2.5e-6,
         |b| {
-            // Which side of the wave rounding puts the first on is the same for all its pixels.
             let on = on_a_wave(b, 0.0)?;
             let over = on_a_wave(b, 1e-6)?;
             let under = on_a_wave(b, -1e-6)?;
             Ok([on, over, under].into_iter().fold(0.0, worst))
         },
+    ),
+    Camera.case(
+        "a_view_of_a_floor_at_depth_0",
+        "looks that start behind what they should see",
+        RADIANCE,
+        5e-5,
+        |b| flat_error(b, over_a_floor_at(0.0)),
+    ),
+    Camera.case(
+        "a_view_of_a_floor_at_a_tenth_of_a_millimetre",
+        "looks that start behind what they should see",
+        RADIANCE,
+        5e-5,
+        |b| flat_error(b, over_a_floor_at(1e-4)),
     ),
     Camera.case(
         "along_its_own_up",
@@ -359,29 +372,55 @@ fn flat_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
     })
 }
 
-/// Worst pixel seen from a wave's surface itself, from the one side or from the other. A sky lights the floor evenly whatever the waves;
-/// rays enter the water where the camera is.
+/// A floor so deep, seen aslant from the air.
+fn over_a_floor_at(depth_m: f64) -> Value {
+    with(
+        camera([0.0, 2.0, 1.5], [0.0, 0.0, 0.0], json!({})),
+        &[("/floor/depth_m", json!(depth_m))],
+    )
+}
+
+/// Worst pixel of two views, down and up, of a camera at a wave or so far above it, against what is to be seen from its side of the wave.
+/// A sky lights the floor evenly whatever the waves; rays cross the surface where the camera is. On the wave itself rounding puts it on either side, which has to be the same for all pixels.
 fn on_a_wave(bench: &mut Bench<'_>, above_m: f64) -> Result<f64, Failure> {
     let (x_m, z_m) = (0.3, 0.1);
     let (height_m, normal) = waves_at(x_m, z_m);
-    let scene = with(
-        under_the_sky(camera(
-            [x_m, height_m + above_m, z_m],
-            [0.5, -1.0, 0.4],
-            json!({}),
-        )),
-        &[
-            ("/water/waves", waves()),
-            ("/lights/0/irradiance_w_m2", json!([0, 0, 0])),
-        ],
-    );
-    let resolved = bench.scene(scene)?;
-    let clear = Clear::of(&resolved)?;
-    let frame = bench.render_resolved(&resolved)?;
-    let found = texels(&frame, LayerName::Radiance);
-    let dry = clear.error(&found, |ray| {
-        clear.at_surface(clear.eye, ray, normal, clear.ior)
-    })?;
-    let wet = clear.error(&found, |ray| clear.down_in_water(ray))?;
-    Ok(dry.min(wet))
+    let up = json!({ "up": [0, 0, -1], "vertical_fov_deg": 20 });
+    let mut errors = [0.0, 0.0];
+    for (target_m, more) in [([0.5, -1.0, 0.4], json!({})), ([0.4, 3.0, 0.2], up)] {
+        let scene = with(
+            under_the_sky(camera([x_m, height_m + above_m, z_m], target_m, more)),
+            &[
+                ("/water/waves", waves()),
+                ("/lights/0/irradiance_w_m2", json!([0, 0, 0])),
+            ],
+        );
+        let resolved = bench.scene(scene)?;
+        let clear = Clear::of(&resolved)?;
+        let frame = bench.render_resolved(&resolved)?;
+        let found = texels(&frame, LayerName::Radiance);
+        let dry = clear.error(&found, |ray| {
+            if ray.dot(normal) < 0.0 {
+                clear.at_surface(clear.eye, ray, normal, clear.ior)
+            } else {
+                Some(clear.sky)
+            }
+        })?;
+        let wet = clear.error(&found, |ray| {
+            if ray.dot(normal) > 0.0 {
+                clear.at_surface(clear.eye, ray, -normal, 1.0 / clear.ior)
+            } else {
+                clear.down_in_water(ray)
+            }
+        })?;
+        errors = [worst(errors[0], dry), worst(errors[1], wet)];
+    }
+    let [dry, wet] = errors;
+    Ok(if above_m > 0.0 {
+        dry
+    } else if above_m < 0.0 {
+        wet
+    } else {
+        dry.min(wet)
+    })
 }

@@ -152,7 +152,7 @@ fn with_box() -> Value {
             ("/water/waves", waves()),
             (
                 "/objects",
-                json!([{ "mesh": super::mesh::cuboid([1.0, 1.0, 1.0]), "scale": 0.4, "translation_m": [0, -1, 0] }]),
+                json!([{ "mesh": super::obj::cuboid([1.0, 1.0, 1.0]), "scale": 0.4, "translation_m": [0, -1, 0] }]),
             ),
             ("/quality/level_map_texels", json!(64)),
             ("/quality/estimate_error", json!(true)),

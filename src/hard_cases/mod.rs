@@ -19,6 +19,7 @@ mod lamp;
 mod light;
 mod machine;
 mod mesh;
+mod obj;
 pub mod page;
 mod place;
 mod sabotage;

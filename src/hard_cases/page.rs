@@ -66,7 +66,7 @@ fn row(outcome: &Outcome, folder: &str) -> String {
         None => String::new(),
     };
     format!(
-        "| {} | {} | {} | {figure}{note} | {:.0e} | {:.0e} | {} | {picture} |",
+        "| {} | {} | {} | {figure}{note} | {:e} | {:.0e} | {} | {picture} |",
         outcome.case.name.replace('_', " "),
         outcome.case.breaks,
         outcome.case.check,

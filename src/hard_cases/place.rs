@@ -87,7 +87,7 @@ fn scene(scale: f64, moved_m: [f64; 2], level_m: f64) -> Value {
             (
                 "/objects",
                 json!([{
-                    "mesh": super::mesh::cuboid([1.0, 1.0, 1.0]), "scale": 0.4 * scale,
+                    "mesh": super::obj::cuboid([1.0, 1.0, 1.0]), "scale": 0.4 * scale,
                     "translation_m": [moved_m[0], level_m - scale, moved_m[1]],
                 }]),
             ),

@@ -2,21 +2,18 @@
 
 use serde_json::{Value, json};
 
-use super::bench::{Bench, texels};
+use super::bench::{Bench, told_w};
 use super::case::Family::Water;
 use super::case::{Case, Failure};
 use super::truths::{
     flat_error, largest_relative, largest_to_mean, pool, reference_error, sun, waves, with, worst,
 };
 use super::unfollowed::{flux_below_floor_w, flux_leaving_again_w, flux_turned_away_w};
-use crate::physics::fresnel::fresnel_transmittance;
 use crate::render::RenderError;
-use crate::scene::LayerName;
 use crate::scene::facts::SceneFacts;
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
 const REFERENCE: &str = "relative L1 against the reference";
-const SEEN: &str = "worst pixel of the irradiance that a camera sees, against E cos θ T";
 const PERIOD: &str = "largest difference of moments whole periods apart, one of them in the first period, to the mean";
 const PHASE: &str = "phases in f32, or too few digits of the time";
 const AGAIN: &str = "rays that would meet the water again, wide drifts, slopes that look away";
@@ -68,13 +65,7 @@ pub(super) const CASES: &[Case] = &[
                 let facts = SceneFacts::of(&resolved).map_err(RenderError::from)?;
                 let due_w = flux_leaving_again_w(&facts);
                 let frame = b.render_resolved(&resolved)?;
-                let told_w = frame
-                    .stats
-                    .warnings
-                    .iter()
-                    .filter(|warning| warning.code == "light_leaves_water_again")
-                    .filter_map(|warning| Some(warning.flux_w?[0]))
-                    .sum::<f64>();
+                let told_w = told_w(&frame, "light_leaves_water_again");
                 worst_so_far = worst(worst_so_far, (told_w - due_w).abs() / due_w.max(1e-9));
             }
             Ok(worst_so_far)
@@ -90,9 +81,7 @@ pub(super) const CASES: &[Case] = &[
             let facts = SceneFacts::of(&resolved).map_err(RenderError::from)?;
             let due_w = flux_turned_away_w(&facts);
             let frame = b.render_resolved(&resolved)?;
-            let told = frame.stats.warnings.iter().find(|w| w.code == "waves_shade_waves");
-            let told_w = told.and_then(|w| w.flux_w).map_or(0.0, |w| w[0]);
-            Ok((told_w / due_w - 1.0).abs())
+            Ok((told_w(&frame, "waves_shade_waves") / due_w - 1.0).abs())
         },
     ),
     Water.case(
@@ -105,8 +94,7 @@ pub(super) const CASES: &[Case] = &[
             let facts = SceneFacts::of(&resolved).map_err(RenderError::from)?;
             let due_w = flux_below_floor_w(&facts);
             let frame = b.render_resolved(&resolved)?;
-            let told = frame.stats.warnings.iter().find(|w| w.code == "waves_bare_floor");
-            let told_w = told.and_then(|w| w.flux_w).map_or(0.0, |w| w[0]);
+            let told_w = told_w(&frame, "waves_bare_floor");
             let missed: f64 = frame.stats.energy.iter().map(|a| a.missed_w[0] / a.emitted_w[0]).sum();
             Ok(worst((told_w / due_w - 1.0).abs(), missed))
         },
@@ -124,20 +112,6 @@ pub(super) const CASES: &[Case] = &[
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(1e-4))])),
-    ),
-    Water.case(
-        "a_view_of_a_floor_at_depth_0",
-        "looks that start behind what they should see",
-        SEEN,
-        1e-4,
-        |b| seen_error(b, 0.0),
-    ),
-    Water.case(
-        "a_view_of_a_floor_at_a_tenth_of_a_millimetre",
-        "looks that start behind what they should see",
-        SEEN,
-        1e-4,
-        |b| seen_error(b, 1e-4),
     ),
     Water.case(
         "floor_at_11000_metres",
@@ -301,30 +275,6 @@ pub(super) const CASES: &[Case] = &[
         |b| reference_error(b, focus(&[0.0, 90.0])),
     ),
 ];
-
-/// Worst pixel of the irradiance that a camera sees on the floor under flat water, relative to E cos θ T.
-fn seen_error(bench: &mut Bench<'_>, depth_m: f64) -> Result<f64, Failure> {
-    let scene = with(
-        pool(),
-        &[
-            ("/floor/depth_m", json!(depth_m)),
-            (
-                "/camera",
-                json!({ "position_m": [0, 2, 1.5], "target_m": [0, 0, 0] }),
-            ),
-            (
-                "/output",
-                json!({ "kind": "view", "width": 48, "height": 32, "format": "exr", "layers": ["radiance", "irradiance"] }),
-            ),
-        ],
-    );
-    let cos_i = 60_f64.to_radians().sin();
-    let due = cos_i * fresnel_transmittance(cos_i, 1.333);
-    let frame = bench.render(scene)?;
-    let seen = texels(&frame, LayerName::Irradiance);
-    let values = seen.as_flattened().iter();
-    Ok(values.map(|v| (v / due - 1.0).abs()).fold(0.0, worst))
-}
 
 /// Ripples of a tenth of a micrometre, whose crests focus a metre down, over a map on which they can be told apart; and over one where
 /// they cannot: that is warned of, and as they move light by 0.42 mm no texel of 62.5 mm may gain or lose more than twice that.

@@ -9,8 +9,10 @@ use crate::scene::placement::LevelBox;
 pub enum Repeat {
     /// Once per level map that is not cached.
     LevelMap,
-    /// Once per light.
+    /// Once per light, and again when its light is done coarsely to estimate the error.
     Light,
+    /// Once per light and not again: what makes its maps, or only counts.
+    FineLight,
     /// Once per light and only when its light is done again coarsely, to estimate the error.
     CoarseLight,
     /// Once, when all lights are done.

@@ -12,7 +12,7 @@ use crate::scene::facts::SceneFacts;
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "irradiance",
-    repeat: Repeat::Light,
+    repeat: Repeat::FineLight,
     reads: &[Slot::Flux, Slot::Energy, Slot::Receivers],
     reads_if_present: &[],
     writes: &[Slot::Irradiance],

@@ -40,6 +40,7 @@ pub fn embedded() -> ShaderSources {
         "passes/unfollowed.wgsl",
         "passes/volumetric.wgsl",
         "shared/account.wgsl",
+        "shared/beam.wgsl",
         "shared/beam_triangle.wgsl",
         "shared/comparison.wgsl",
         "shared/cull.wgsl",

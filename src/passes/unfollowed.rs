@@ -18,7 +18,7 @@ const NO_FLOOR_M: f64 = -1e30;
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "unfollowed",
-    repeat: Repeat::Light,
+    repeat: Repeat::FineLight,
     reads: &[Slot::Waves, Slot::Surface, Slot::Beams, Slot::Hits],
     reads_if_present: &[],
     writes: &[Slot::Energy],

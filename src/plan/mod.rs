@@ -265,7 +265,7 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
 fn runs(repeat: Repeat, facts: &SceneFacts, missing: usize) -> u32 {
     match repeat {
         Repeat::LevelMap => u32::try_from(missing).unwrap_or(u32::MAX),
-        Repeat::Light | Repeat::CoarseLight => {
+        Repeat::Light | Repeat::FineLight | Repeat::CoarseLight => {
             u32::try_from(facts.lights.len()).unwrap_or(u32::MAX)
         }
         Repeat::Frame => 1,

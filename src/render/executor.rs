@@ -96,20 +96,19 @@ impl Renderer {
         let mut accounts = Vec::new();
         let mut widened = Vec::new();
         let mut plane_counts: Vec<Vec<[u32; 4]>> = Vec::new();
-        for light in 0..if of(Repeat::Light).is_empty() {
+        let of_lights: Vec<&'static PassDesc> = kept
+            .iter()
+            .copied()
+            .filter(|pass| matches!(pass.repeat, Repeat::Light | Repeat::FineLight))
+            .collect();
+        for light in 0..if of_lights.is_empty() {
             0
         } else {
             facts.lights.len()
         } {
             check_cancelled(cancel)?;
             let reruns = self.wide_sum_reruns;
-            accounts.extend(self.run_light(
-                facts,
-                light,
-                &of(Repeat::Light),
-                buffers,
-                &mut time_ms,
-            )?);
+            accounts.extend(self.run_light(facts, light, &of_lights, buffers, &mut time_ms)?);
             if self.wide_sum_reruns > reruns {
                 widened.push(collect::widened(facts.lights[light].index));
             }
@@ -220,13 +219,6 @@ impl Renderer {
         time_ms: &mut TimeStats,
     ) -> Result<Vec<[f32; 4]>, RenderError> {
         let coarse = facts.coarse();
-        // What only counts for the account tells nothing of the maps.
-        let sums: Vec<&'static PassDesc> = light
-            .iter()
-            .copied()
-            .filter(|pass| !pass.writes.contains(&Slot::Irradiance))
-            .filter(|pass| pass.name != passes::unfollowed::PASS.name)
-            .collect();
         let lights = 0..coarse.lights.len();
         let mut wide_sums: Vec<bool> = lights
             .map(|index| light::needs_wide_sums(&coarse, index))
@@ -236,7 +228,7 @@ impl Renderer {
             let (mut encoder, accounts) = self.coarse_lights(
                 (&coarse, facts),
                 &wide_sums,
-                (&sums, coarse_light),
+                (light, coarse_light),
                 buffers,
                 cancel,
                 time_ms,

@@ -285,7 +285,7 @@ fn every_entry_point_is_run_by_a_step() {
                 first_triangle: 0,
                 triangles: 12,
             },
-            Repeat::Light => Run::Light {
+            Repeat::Light | Repeat::FineLight => Run::Light {
                 index: 0,
                 wide_sums: false,
             },
