@@ -226,6 +226,27 @@ pub struct Warning {
 }
 
 impl Warning {
+    /// Codes of warnings without a flux: nothing is lost (`sums_done_again`), or what they tell of is no light on its way but
+    /// dials, pixels, layers, values of a file, or what surfaces reflect. All others say in a frame how much flux is concerned.
+    pub const WITHOUT_FLUX: [&'static str; 16] = [
+        "calibrated_elsewhere",
+        "half_clamped",
+        "half_flushed",
+        "mesh_material_clamped",
+        "mesh_missing_material",
+        "mesh_mtl_ignored",
+        "pixels_along_water",
+        "pixels_outside_map",
+        "planes_light_the_first_layer",
+        "png_clipped",
+        "png_layers_left_out",
+        "png_negative",
+        "setting_left_out",
+        "sums_done_again",
+        "target_error_not_met",
+        "time_budget_not_met",
+    ];
+
     /// A warning without pointer and flux.
     pub fn new(code: &str, message: impl Into<String>) -> Self {
         Self {

@@ -14,7 +14,7 @@
 @group(0) @binding(17) var<storage, read_write> visible_normal: array<vec4f>;
 // Diffuse reflectance, way under water between surface seen and camera (m).
 @group(0) @binding(18) var<storage, read_write> visible_albedo: array<vec4f>;
-// Factor on the radiance of the surface seen, factor on the sky's, way of the sky's light under water (m), 0.
+// Factor on the radiance of the surface seen, factor on the sky's, way of the sky's light under water (m), notes.
 @group(0) @binding(19) var<storage, read_write> visible_transport: array<vec4f>;
 
 const MARCH_STEPS: u32 = 160u;
@@ -22,6 +22,9 @@ const SURFACE_TOLERANCE_M: f32 = 2e-5;
 // Where a ray that has met the water starts to look: as far before that point as the point may lie behind the water, so that what is
 // just under the surface is not jumped.
 const START_M: f32 = -2.0 * SURFACE_TOLERANCE_M;
+
+// MARCH_UNFINISHED where the march along the water ended before it met the water or was away from it.
+var<private> notes: f32;
 
 struct Ray {
     origin: vec3f,
@@ -76,6 +79,7 @@ fn meet_water(ray: Ray, side: f32, t_max: f32) -> f32 {
         f_before = f;
         t += max(f / rate, SURFACE_TOLERANCE_M);
     }
+    notes = MARCH_UNFINISHED;
     // One that still runs along the wave it started at goes away from it.
     return select(t, -1.0, leaves);
 }
@@ -174,6 +178,7 @@ fn camera_hits_main(@builtin(global_invocation_id) id: vec3u) {
     let index = band_pixel(id);
     if index >= view.width * view.row_count { return; }
     let ray = pixel_ray(id.x, id.y + view.first_row);
+    notes = 0.0;
     var pixel: Pixel;
     if over_water(ray.origin) >= 0.0 { pixel = look_from_air(ray); } else { pixel = look_from_water(ray); }
     let seen = pixel.seen.receiver >= 0;
@@ -182,5 +187,5 @@ fn camera_hits_main(@builtin(global_invocation_id) id: vec3u) {
     visible_position[index] = vec4f(select(vec3f(0.0), pixel.position, seen), receiver);
     visible_normal[index] = vec4f(pixel.seen.normal, pixel.first_m * dot(ray.direction, view.forward.xyz));
     visible_albedo[index] = vec4f(pixel.seen.albedo, select(0.0, pixel.path_m, seen));
-    visible_transport[index] = vec4f(pixel.weight, pixel.sky_weight, pixel.sky_path_m, 0.0);
+    visible_transport[index] = vec4f(pixel.weight, pixel.sky_weight, pixel.sky_path_m, notes);
 }

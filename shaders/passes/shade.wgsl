@@ -5,7 +5,7 @@
 @group(0) @binding(18) var<storage, read> visible_albedo: array<vec4f>;
 @group(0) @binding(19) var<storage, read> visible_transport: array<vec4f>;
 @group(0) @binding(20) var<storage, read> visible_irradiance: array<vec4f>;
-@group(0) @binding(22) var<storage, read_write> radiance: array<vec4f>; // sums over samples: W/(m² sr); w: 1 where the floor's map has no texel
+@group(0) @binding(22) var<storage, read_write> radiance: array<vec4f>; // sums over samples: W/(m² sr), notes
 
 // Whether any light is lost on its way; without it no exponential is computed.
 override ATTENUATES: bool = true;
@@ -29,5 +29,5 @@ fn shade_main(@builtin(global_invocation_id) id: vec3u) {
     }
     var held = vec4f(0.0);
     if view.sample_index > 0u { held = radiance[index]; }
-    radiance[index] = held + vec4f(sum, visible_irradiance[index].w);
+    radiance[index] = held + vec4f(sum, visible_irradiance[index].w + transport.w);
 }

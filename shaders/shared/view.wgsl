@@ -33,6 +33,9 @@ struct View {
 
 @group(0) @binding(0) var<uniform> view: View;
 
+// What a sample whose march along the water ended early adds to its pixel's notes; one that sees the floor beside its map adds 1.
+const MARCH_UNFINISHED: f32 = 128.0;
+
 // Index of the invocation's pixel within the band, or the pixel count where there is none.
 fn band_pixel(id: vec3u) -> u32 {
     if id.x >= view.width || id.y >= view.row_count { return view.width * view.row_count; }

@@ -13,7 +13,7 @@ use crate::frame::Frame;
 use crate::mesh::{Mesh, MeshStore};
 use crate::render::{RenderError, Renderer};
 use crate::scene::{LayerName, ResolvedScene, Scene, SceneError, resolve};
-use crate::stats::Stats;
+use crate::stats::{Stats, Warning};
 
 /// Most that an energy account may be open by.
 const MOST_CLOSURE: f64 = 1e-5;
@@ -217,18 +217,6 @@ fn nothing_renders() -> Failure {
     Failure::Check("there is no renderer".to_owned())
 }
 
-/// Warnings about flux: each has to say how much.
-const OF_FLUX: [&str; 8] = [
-    "beams_torn",
-    "light_from_below_not_followed",
-    "light_leaves_water_again",
-    "light_under_floor",
-    "planes_do_not_conserve",
-    "scattering_not_followed",
-    "waves_bare_floor",
-    "waves_shade_waves",
-];
-
 /// Flux of the first channel that the warnings of this kind tell of, W.
 pub(super) fn told_w(frame: &Frame, code: &str) -> f64 {
     let warnings = frame.stats.warnings.iter().filter(|w| w.code == code);
@@ -245,7 +233,7 @@ fn unsaid(stats: &Stats) -> Option<String> {
         let tells = warning
             .flux_w
             .is_some_and(|w| w.iter().all(|v| v.is_finite()));
-        if OF_FLUX.contains(&warning.code.as_str()) && !tells {
+        if !tells && !Warning::WITHOUT_FLUX.contains(&warning.code.as_str()) {
             return Some(format!("`{}` does not say how much flux", warning.code));
         }
     }

@@ -5,9 +5,9 @@
 mod error;
 pub mod hierarchy;
 mod info;
-mod mtl;
+pub(crate) mod mtl;
 pub mod obj;
-mod repair;
+pub(crate) mod repair;
 mod scan;
 pub mod shapes;
 pub mod store;

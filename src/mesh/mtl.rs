@@ -9,6 +9,8 @@ use crate::stats::Warning;
 
 /// Diffuse reflectance where the files say nothing.
 pub const DEFAULT_ALBEDO: f32 = 0.8;
+/// Code of the warning that a reflectance was out of range.
+pub(crate) const CLAMPED: &str = "mesh_material_clamped";
 
 const MTL: &str = "MTL";
 
@@ -136,7 +138,7 @@ pub(super) fn material(
     });
     if !diffuse.iter().all(|value| (0.0..=1.0).contains(value)) {
         warnings.push(Warning::new(
-            "mesh_material_clamped",
+            CLAMPED,
             format!(
                 "Material `{name}` has Kd {} {} {}, outside 0 … 1; {} {} {} is used.",
                 diffuse[0], diffuse[1], diffuse[2], albedo[0], albedo[1], albedo[2]

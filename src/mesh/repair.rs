@@ -12,6 +12,11 @@ use crate::stats::Warning;
 /// cross product alone reaches 10⁻¹⁶.
 const FLAT: f64 = 1e-12;
 
+/// Codes of the warnings that triangles were left out.
+pub(crate) const LEFT_OUT: [&str; 2] = [DEGENERATE, DUPLICATE];
+const DEGENERATE: &str = "mesh_degenerate_triangles";
+const DUPLICATE: &str = "mesh_duplicate_triangles";
+
 /// A triangle as read, in file coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RawTriangle {
@@ -188,12 +193,12 @@ fn warnings(
     };
     warn(
         degenerate,
-        "mesh_degenerate_triangles",
+        DEGENERATE,
         "triangles without area (corners coincide or lie on a line) were left out.",
     );
     warn(
         duplicates,
-        "mesh_duplicate_triangles",
+        DUPLICATE,
         "triangles that repeat another one were left out.",
     );
     warn(

@@ -5,6 +5,10 @@ use super::gpu_data::{View, vec2, vec4};
 use super::slot::Slot;
 use crate::scene::facts::SceneFacts;
 
+/// What a sample of a pixel whose march along the water ended early adds to its notes (the fourth value of its radiance); one that sees
+/// the floor beside its map adds 1.
+pub const MARCH_UNFINISHED: f32 = 128.0;
+
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "camera_hits",

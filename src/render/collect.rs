@@ -7,12 +7,14 @@ use glam::DVec3;
 use super::RenderError;
 use crate::accuracy::estimate::{Compared, FrameComparison, estimate_error};
 use crate::frame::Layer;
+use crate::passes::camera_hits::MARCH_UNFINISHED;
 use crate::passes::maps::MapLayout;
 use crate::passes::slot::{ENERGY_TERMS, Slot};
 use crate::passes::{estimate, light, term};
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
 use crate::scene::unfollowed;
+use crate::scene::warnings::{SCATTERING_NOT_FOLLOWED, WAVES_UNDERSAMPLED};
 use crate::scene::{LayerName, Receiver};
 use crate::stats::{EnergyAccount, PlaneStats, Warning};
 
@@ -127,14 +129,25 @@ pub(super) fn join_warnings(known: &mut Vec<Warning>, seen: Vec<Warning>, has_lo
     known.extend(seen);
 }
 
-/// Code of the warning that scattered light is lost.
-const SCATTERED: &str = "scattering_not_followed";
-
-/// Says in the warning of light that is lost by scattering how much that was, all lights together.
-pub(super) fn tell_scattered(warnings: &mut [Warning], energy: &[EnergyAccount]) {
-    for warning in warnings.iter_mut().filter(|w| w.code == SCATTERED) {
-        let sum = |c: usize| energy.iter().map(|account| account.scattered_w[c]).sum();
-        warning.flux_w = Some(std::array::from_fn(sum));
+/// Puts the flux concerned to warnings that were there before it was known.
+pub(super) fn tell_flux(warnings: &mut [Warning], facts: &SceneFacts, energy: &[EnergyAccount]) {
+    let sum_w = |of: &dyn Fn(&EnergyAccount) -> Option<[f64; 3]>| {
+        let each = energy.iter().filter_map(of);
+        each.fold([0.0; 3], |sum, flux_w| {
+            std::array::from_fn(|c| sum[c] + flux_w[c])
+        })
+    };
+    let undersampled = |account: &EnergyAccount| {
+        let mut lights = facts.lights.iter();
+        let light = lights.find(|light| light.index == account.light)?;
+        facts.is_undersampled(light).then_some(account.emitted_w)
+    };
+    for warning in warnings {
+        warning.flux_w = match warning.code.as_str() {
+            SCATTERING_NOT_FOLLOWED => Some(sum_w(&|account| Some(account.scattered_w))),
+            WAVES_UNDERSAMPLED => Some(sum_w(&undersampled)),
+            _ => continue,
+        };
     }
 }
 
@@ -237,8 +250,10 @@ fn closure(account: &EnergyAccount) -> f64 {
 pub(super) struct ViewLayers<'a> {
     facts: &'a SceneFacts,
     width: u32,
+    height: u32,
     layers: BTreeMap<LayerName, Layer>,
     outside_map: u64,
+    unfinished: u64,
 }
 
 impl<'a> ViewLayers<'a> {
@@ -265,8 +280,10 @@ impl<'a> ViewLayers<'a> {
         Self {
             facts,
             width,
+            height,
             layers,
             outside_map: 0,
+            unfinished: 0,
         }
     }
 
@@ -284,7 +301,10 @@ impl<'a> ViewLayers<'a> {
         };
         match source {
             Slot::Radiance => {
-                self.outside_map += band.iter().filter(|v| v[3] != 0.0).count() as u64;
+                for notes in band.iter().map(|v| v[3]) {
+                    self.outside_map += u64::from(notes % MARCH_UNFINISHED != 0.0);
+                    self.unfinished += u64::from(notes >= MARCH_UNFINISHED);
+                }
                 let per_sample = 1.0 / (self.facts.quality.pixel_samples as f32).powi(2);
                 fill(self.layers.get_mut(&LayerName::Radiance), &|v| {
                     [v[0] * per_sample, v[1] * per_sample, v[2] * per_sample, 1.0]
@@ -317,16 +337,24 @@ impl<'a> ViewLayers<'a> {
         for (name, layer) in &self.layers {
             check_finite(*name, layer, self.width)?;
         }
-        let mut warnings = Vec::new();
-        if self.outside_map > 0 {
-            warnings.push(Warning::new(
-                "pixels_outside_map",
-                format!(
-                    "{} pixels see the floor beside its irradiance map; they repeat its edge",
-                    self.outside_map
-                ),
-            ));
-        }
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let of_pixels = |count: u64, code: &str, what: &str| {
+            (count > 0).then(|| {
+                let share = 100.0 * count as f64 / pixels;
+                Warning::new(code, format!("{count} pixels ({share:.3} %) {what}"))
+            })
+        };
+        let outside = of_pixels(
+            self.outside_map,
+            "pixels_outside_map",
+            "see the floor beside its irradiance map; they repeat its edge",
+        );
+        let unfinished = of_pixels(
+            self.unfinished,
+            "pixels_along_water",
+            "look so flatly along the waves that their rays' way to the water is not found to its end; they show what is where the search ended",
+        );
+        let warnings = outside.into_iter().chain(unfinished).collect();
         Ok((self.layers, warnings))
     }
 }

@@ -274,7 +274,7 @@ impl Renderer {
         };
         let has_looked = !stats.energy.is_empty();
         collect::join_warnings(&mut stats.warnings, run.warnings, has_looked);
-        collect::tell_scattered(&mut stats.warnings, &stats.energy);
+        collect::tell_flux(&mut stats.warnings, &facts, &stats.energy);
         if let Some((_, chosen)) = tuned {
             stats.warnings.extend(tune::unmet(asked, &chosen));
             let adapter = format!("{}, {}", stats.adapter.name, stats.adapter.driver);

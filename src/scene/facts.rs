@@ -9,7 +9,7 @@ use super::lamp_window;
 use super::placement::{LevelBox, ObjectFacts};
 use super::ranges::DEFAULT_MAP_SIDE;
 use super::source::{self, AirLight, Grid, Source};
-use super::unfollowed;
+use super::warnings;
 use super::window::{self, Rect, Region};
 use super::{
     Camera, Issue, LayerName, Light, Output, Quality, Receiver, ResolvedScene, Scene, SceneError,
@@ -17,11 +17,6 @@ use super::{
 use crate::physics::{fresnel, sky};
 use crate::stats::Warning;
 use crate::waves::WaterSurface;
-
-/// Cells along the shortest wave below which caustics are washed out.
-const CELLS_PER_WAVE: f64 = 8.0;
-/// Water cells above the water within which a point light's rays spread too fast for the grid.
-const CLOSE_CELLS: f64 = 4.0;
 
 /// Most suns and point lights that the camera's pass has room for.
 pub const MOST_LIGHTS: usize = 64;
@@ -47,6 +42,11 @@ pub struct LightFacts {
 }
 
 impl LightFacts {
+    /// Whether the light is under water, so that its rays pass no surface.
+    pub fn is_submerged(&self) -> bool {
+        matches!(self.source, Source::Submerged { .. })
+    }
+
     /// Side of a square of water in which all of `cells` × `cells` cells are as large as the largest one is, m; 0 of a light under
     /// water, whose rays pass no surface.
     pub fn span_m(&self, cells: u32) -> f64 {
@@ -215,7 +215,8 @@ impl SceneFacts {
         facts.want_output(&scene.output, scene.camera.as_ref());
         facts.size_maps();
         facts.find_lights(resolved)?;
-        facts.collect_warnings(&water.scattering_per_m);
+        let found = warnings::warnings(&facts, resolved);
+        facts.warnings.extend(found);
         Ok(facts)
     }
 
@@ -261,11 +262,6 @@ impl SceneFacts {
                     && (self.floor_map.is_some() || self.wet_objects().next().is_some())
             }
         }
-    }
-
-    fn has_light_through_water(&self) -> bool {
-        let mut lights = self.lights.iter();
-        lights.any(|light| !matches!(light.source, Source::Submerged { .. }))
     }
 
     fn want_output(&mut self, output: &Output, camera: Option<&Camera>) {
@@ -386,8 +382,6 @@ impl SceneFacts {
                     "a light that goes down into the water",
                 )],
             })?;
-            let warnings = source::warnings(self, light_index, &source, power);
-            self.warnings.extend(warnings);
             self.lights.push(LightFacts {
                 index: light_index,
                 source,
@@ -399,103 +393,6 @@ impl SceneFacts {
             });
         }
         Ok(())
-    }
-
-    /// Says where a cell of the water is too large for the shortest wave.
-    fn warn_of_coarse_cells(&mut self) {
-        let shortest_m = self.surface.shortest_wave_m();
-        let widest_m = self
-            .lights
-            .iter()
-            .map(|light| light.span_m(self.quality.water_cells))
-            .fold(0.0, f64::max);
-        let needed = (widest_m * CELLS_PER_WAVE / shortest_m).ceil();
-        if needed > f64::from(self.quality.water_cells) {
-            let mut warning = Warning::new(
-                "waves_undersampled",
-                format!(
-                    "a water cell of {:.3} m is coarse for the shortest wave of {shortest_m:.3} m; {needed:.0} cells would do",
-                    widest_m / f64::from(self.quality.water_cells)
-                ),
-            );
-            warning.pointer = Some("/quality/water_cells".to_owned());
-            self.warnings.push(warning);
-        }
-    }
-
-    /// Says what placement by planes leaves out.
-    fn warn_of_planes(&mut self) {
-        let wet = self.wet_objects().count();
-        if !self.quality.has_planes() || self.lights.is_empty() {
-            return;
-        }
-        if wet > 1 {
-            let mut warning = Warning::new(
-                "planes_ignore_other_objects",
-                "planes know nothing of other objects: what one object stops lights the others all the same",
-            );
-            warning.pointer = Some("/quality/placement".to_owned());
-            self.warnings.push(warning);
-        }
-        if wet > 0 && self.quality.layers > 1 {
-            let mut warning = Warning::new(
-                "planes_light_the_first_layer",
-                "planes light what the light direction sees first; further layers stay dark",
-            );
-            warning.pointer = Some("/quality/layers".to_owned());
-            self.warnings.push(warning);
-        }
-    }
-
-    fn collect_warnings(&mut self, scattering_per_m: &[f64; 3]) {
-        if scattering_per_m.iter().any(|&b| b > 0.0) {
-            let mut warning = Warning::new(
-                "scattering_not_followed",
-                "light scattered out of the beams is counted as lost; light scattered into the picture is not simulated",
-            );
-            warning.pointer = Some("/water/scattering_per_m".to_owned());
-            self.warnings.push(warning);
-        }
-        for (index, object) in self.objects.iter().enumerate() {
-            if object.wet && object.max.y > self.surface.max_height_m() {
-                let mut warning = Warning::new(
-                    "object_cuts_surface",
-                    "the object reaches through the water; the shadow of its dry part on the water is not simulated",
-                );
-                warning.pointer = Some(format!("/objects/{index}"));
-                self.warnings.push(warning);
-            } else if !object.wet && self.has_receiver() && self.has_light_through_water() {
-                let mut warning = Warning::new(
-                    "dry_object_casts_no_shadow",
-                    "the object is above the water; its shadow on the water is not simulated",
-                );
-                warning.pointer = Some(format!("/objects/{index}"));
-                self.warnings.push(warning);
-            }
-        }
-        self.warn_of_planes();
-        self.warn_of_coarse_cells();
-        for light in &self.lights {
-            let finest_m =
-                light.grid.places.size().min_element() / f64::from(self.quality.water_cells);
-            if let Source::Point { position_m } = light.source
-                && light.window.distance_m(position_m) < CLOSE_CELLS * finest_m
-            {
-                let mut warning = Warning::new(
-                    "light_close_to_water",
-                    format!(
-                        "the light is {:.1e} m above the water at rest, less than {CLOSE_CELLS} of the smallest water cells of {finest_m:.1e} m: where its light goes is coarse",
-                        position_m.y
-                    ),
-                );
-                warning.pointer = Some(format!("/lights/{}", light.index));
-                self.warnings.push(warning);
-            }
-            if unfollowed::looks_away(&self.surface, light) {
-                self.warnings
-                    .push(unfollowed::waves_shade_waves(light.index));
-            }
-        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Objects in local coordinates, and the boxes their level maps are drawn in.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4};
 
 use super::ResolvedScene;
 use crate::mesh::Mesh;
@@ -33,6 +33,43 @@ impl ObjectFacts {
         let mut middle = (self.min + self.max) * 0.5;
         middle.y = 0.5 * (self.min.y + top_m);
         middle
+    }
+}
+
+/// How an object's bounding box looks along an axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Across {
+    /// Its least width, m.
+    pub(super) width_m: f64,
+    /// Its area, m².
+    pub(super) area_m2: f64,
+}
+
+impl ObjectFacts {
+    /// How the box around its mesh, turned with the object, looks along the unit vector `axis`.
+    pub(super) fn across(&self, mesh: &Mesh, axis: DVec3) -> Across {
+        let size = (mesh.max_m - mesh.min_m).as_dvec3();
+        let matrix = self.local_from_mesh.matrix3;
+        let edges = [
+            matrix.x_axis * size.x,
+            matrix.y_axis * size.y,
+            matrix.z_axis * size.z,
+        ];
+        let (u, v) = axis.any_orthonormal_pair();
+        let width_along = |way: DVec3| edges.iter().map(|edge| edge.dot(way).abs()).sum::<f64>();
+        // A sum of |cosines| is least across one of the edges' pictures.
+        let width_m = edges
+            .iter()
+            .map(|edge| DVec2::new(edge.dot(u), edge.dot(v)))
+            .filter_map(|picture| picture.perp().try_normalize())
+            .map(|way| width_along(u * way.x + v * way.y))
+            .fold(f64::INFINITY, f64::min);
+        let [a, b, c] = edges;
+        let faces = [a.cross(b), b.cross(c), c.cross(a)];
+        Across {
+            width_m: if width_m.is_finite() { width_m } else { 0.0 },
+            area_m2: faces.iter().map(|face| face.dot(axis).abs()).sum(),
+        }
     }
 }
 

@@ -3,10 +3,9 @@
 use glam::{DVec2, DVec3};
 
 use super::Light;
-use super::facts::SceneFacts;
 use super::window::Rect;
+use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::refraction;
-use crate::stats::Warning;
 use crate::waves::WaterSurface;
 
 /// Largest cell of a point light's grid over its smallest, at most.
@@ -104,6 +103,20 @@ impl Source {
         }
     }
 
+    /// Most that falls on a square metre across its rays at height `y_m` under flat water, of a light of unit power: 1 of a sun's
+    /// irradiance before the water, 1/m² of a point light's intensity.
+    pub(super) fn most_at(&self, target_m: DVec3, ior: f64) -> f64 {
+        match *self {
+            Self::Sun { to_light } => {
+                let enters = fresnel_transmittance(to_light.y, ior) * to_light.y;
+                self.direction_at(target_m, ior)
+                    .map_or(0.0, |way| enters / -way.y)
+            }
+            Self::Point { .. } => self.seeming_height_m(target_m.y, ior).powi(-2),
+            Self::Submerged { position_m } => (target_m - position_m).length_squared().recip(),
+        }
+    }
+
     /// Where a point light is; `None` of a sun.
     pub fn position_m(&self) -> Option<DVec3> {
         match *self {
@@ -190,43 +203,4 @@ pub(super) fn facing_w_m2(position_m: DVec3, floor_y_m: Option<f64>, intensity_w
     const NEAREST_M: f64 = 0.1;
     let middle_m = DVec3::new(0.0, floor_y_m.unwrap_or(0.0), 0.0);
     intensity_w_sr / (position_m - middle_m).length().max(NEAREST_M).powi(2)
-}
-
-/// What is not simulated of a point light.
-pub(super) fn warnings(
-    facts: &SceneFacts,
-    light: u32,
-    source: &Source,
-    power: [f64; 3],
-) -> Vec<Warning> {
-    let mut all = Vec::new();
-    let mut add = |code: &str, message: String, flux_w: Option<[f64; 3]>| {
-        let mut warning = Warning::new(code, message);
-        warning.pointer = Some(format!("/lights/{light}"));
-        warning.flux_w = flux_w;
-        all.push(warning);
-    };
-    if let Source::Submerged { .. } = source {
-        add(
-            "light_from_below_not_followed",
-            "the light is under water; what it sends up to the surface, half of its power at most, is not followed into the air or back down".to_owned(),
-            Some(power.map(|i| std::f64::consts::TAU * i)),
-        );
-    }
-    let Some(position_m) = source.position_m() else {
-        return all;
-    };
-    for index in facts.wet_objects() {
-        let object = &facts.objects[index];
-        if position_m.cmpge(object.min).all() && position_m.cmple(object.max).all() {
-            add(
-                "light_within_object",
-                format!(
-                    "the light is within the bounds of object {index}; of what surrounds it only the side that the object's level map shows is lit"
-                ),
-                None,
-            );
-        }
-    }
-    all
 }

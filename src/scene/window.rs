@@ -39,6 +39,15 @@ impl Rect {
         }
     }
 
+    /// What lies in another one too; `None` where that is nothing.
+    pub(super) fn within(self, other: Self) -> Option<Self> {
+        let both = Self {
+            min: self.min.max(other.min),
+            max: self.max.min(other.max),
+        };
+        both.min.cmplt(both.max).all().then_some(both)
+    }
+
     /// Distance of a point above or under the rectangle at rest, m.
     pub(super) fn distance_m(&self, p: DVec3) -> f64 {
         let at = DVec2::new(p.x, p.z);

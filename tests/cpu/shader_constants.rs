@@ -1,6 +1,7 @@
 //! Figures that stand in Rust and in WGSL are the same, and dispatches cover their work.
 
 use caustica::gpu::shader::Module;
+use caustica::passes::camera_hits::MARCH_UNFINISHED;
 use caustica::passes::desc::Run;
 use caustica::passes::maps::{self, MapLayout};
 use caustica::passes::{
@@ -38,6 +39,15 @@ fn agrees(name: &str, expected: f64) {
         }
     }
     assert!(seen > 0, "no shader has {name}");
+}
+
+#[test]
+fn notes_of_pixels_agree_and_stay_apart() {
+    agrees("MARCH_UNFINISHED", f64::from(MARCH_UNFINISHED));
+    let most_samples = ranges::PixelSamples::MAX.pow(2) as f32;
+    assert!(most_samples < MARCH_UNFINISHED);
+    let most = most_samples * (MARCH_UNFINISHED + 1.0);
+    assert!(most < (1_u32 << f32::MANTISSA_DIGITS) as f32);
 }
 
 #[test]

@@ -154,3 +154,23 @@ fn a_steep_sea_under_a_low_sun_closes() {
     assert!(map.closure() <= CLOSURE, "{:?}", map.stats.energy);
     assert!(map.mean(2) > 0.0);
 }
+
+#[test]
+fn cells_too_coarse_for_the_waves_are_told_with_the_flux_through_them() {
+    // The lamp's window is small, so that its cells are fine enough; the sun's are not.
+    let scene = json!({
+        "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 0.5 }] },
+        "floor": { "depth_m": 1, "size_m": [8, 8] },
+        "lights": [
+            { "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [1, 2, 3] },
+            { "kind": "point", "position_m": [0, -0.5, 0], "intensity_w_sr": [1, 1, 1] }
+        ],
+        "quality": { "water_cells": 32 },
+        "output": { "kind": "irradiance_map", "receiver": "floor", "width": 64, "height": 64 }
+    });
+    let map = Map::of(scene);
+    let mut warnings = map.stats.warnings.iter();
+    let found = warnings.find(|w| w.code == "waves_undersampled").unwrap();
+    assert_eq!(found.flux_w, Some(map.stats.energy[0].emitted_w));
+    assert!(map.stats.energy[0].emitted_w[0] > 0.0);
+}

@@ -438,3 +438,42 @@ fn a_box_in_the_air_is_seen_from_under_water() {
     let albedo = harness::layer(&frame, LayerName::Albedo);
     assert!((albedo[16 * 48 + 24][0] - 0.6).abs() < 1e-6);
 }
+
+/// A long sea of waves that are seldom all at their crests, and a camera a little above them.
+fn along_the_sea(down_m: f64) -> Value {
+    let wave = |wavelength_m: f64, direction_deg: f64| json!({ "kind": "sine", "amplitude_m": 0.05, "wavelength_m": wavelength_m, "direction_deg": direction_deg });
+    let mut scene = pool(
+        json!({ "position_m": [0, 0.3, 0], "target_m": [10, 0.3 - down_m, 0],
+                                 "vertical_fov_deg": 2 }),
+    );
+    scene["water"]["waves"] = json!([wave(1.0, 10.0), wave(1.37, -40.0), wave(0.83, 75.0)]);
+    scene["lights"] = json!([scene["lights"][0], { "kind": "sky", "radiance_w_m2_sr": SKY }]);
+    scene["output"]["layers"] = json!(["radiance"]);
+    scene
+}
+
+#[test]
+fn pixels_whose_way_along_the_waves_is_not_followed_to_its_end_are_told() {
+    let told = |scene: Value| -> Option<u64> {
+        let frame = frame(scene);
+        let mut warnings = frame.stats.warnings.iter();
+        let found = warnings.find(|w| w.code == "pixels_along_water")?;
+        let (count, rest) = found.message.split_once(" pixels (").unwrap();
+        let count: u64 = count.parse().unwrap();
+        let share: f64 = rest.split_once(" %)").unwrap().0.parse().unwrap();
+        let pixels = f64::from(frame.width * frame.height);
+        assert!((share - 100.0 * count as f64 / pixels).abs() < 1e-3);
+        Some(count)
+    };
+    let one = told(along_the_sea(0.02)).expect("pixels at the horizon");
+    assert!(one < 48 * 32 / 4, "{one} pixels");
+    // Sixteen rays per pixel: no pixel counts twice, and neighbours of those from before may join.
+    let mut many = along_the_sea(0.02);
+    many["quality"]["pixel_samples"] = json!(4);
+    let of_many = told(many).expect("pixels at the horizon");
+    assert!(
+        of_many >= one / 2 && of_many < 4 * one + 100,
+        "{of_many}, {one}"
+    );
+    assert_eq!(told(along_the_sea(3.0)), None);
+}

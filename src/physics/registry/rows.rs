@@ -542,9 +542,10 @@ pub const TWINS: [Twin; 20] = [
         domain: &[
             decades(0.0, [1e-3, 1e5], 1e9, &[0.0, SUBNORMAL, 1.0, 1e9]),
             even(0.0, 1.0, &[0.0, 0.93, 1.0]),
-            decades(0.0, [1e-4, 1e2], 1e3, &[0.0, SUBNORMAL, 0.06, 1e3]),
-            decades(-1e4, [1e-3, 1e3], 1e4, &[-1.0, -0.0, 0.0, 1.0, 1e4]),
-            even(1.0, 1.5, &[1.0]),
+            decades(0.0, [1e-4, 1e2], 2e4, &[0.0, SUBNORMAL, 0.06, 2e4]),
+            decades(-1e4, [1e-3, 1e3], 1.1e4, &[-1.0, -0.0, 0.0, 1.0, 1.1e4]),
+            // 1 of an index beyond all bounds, 2 of one that is no bound.
+            even(1.0, 2.0, &[1.0, 2.0]),
             UPWARD,
             CONE,
         ],
