@@ -54,6 +54,26 @@ impl Timing {
         self.by_host && self.group.is_none()
     }
 
+    /// Whether the host may time passes where the adapter's timestamps say nothing.
+    pub fn allow_host(&mut self, gpu: &GpuContext, allowed: bool) {
+        self.by_host = gpu.adapter().software && allowed;
+    }
+
+    /// Whether the host times passes on this adapter at all, one by one or in groups.
+    pub fn times_by_host(&self) -> bool {
+        self.by_host
+    }
+
+    /// How many passes are timed so far.
+    pub fn mark(&self) -> usize {
+        self.labels.len()
+    }
+
+    /// Takes back the passes that were recorded since a [mark](Self::mark), and will not run.
+    pub fn forget_since(&mut self, mark: usize) {
+        self.labels.truncate(mark);
+    }
+
     /// From now on all passes count as `group`, and the host does not time them one by one: it [notes](Self::note) the group.
     pub fn group(&mut self, group: Option<&'static str>) {
         self.group = group;

@@ -47,23 +47,35 @@ impl Renderer {
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
     }
 
-    /// Submits and waits; ms of this submission alone, which `time_ms` gets besides those of the pieces before it.
+    /// Submits and waits; ms from then until all that was submitted so far is done, which `time_ms` gets besides those of the pieces
+    /// before it.
     pub(super) fn submit(
         &mut self,
         encoder: wgpu::CommandEncoder,
         started: Recording,
         time_ms: &mut TimeStats,
     ) -> Result<f64, GpuError> {
+        let submitted = self.send(encoder, started, time_ms);
+        self.gpu.wait()?;
+        let ms = ms_since(submitted);
+        time_ms.gpu += ms;
+        Ok(ms)
+    }
+
+    /// Submits and goes on; when it was sent. What waits next waits for it too.
+    pub(super) fn send(
+        &mut self,
+        encoder: wgpu::CommandEncoder,
+        started: Recording,
+        time_ms: &mut TimeStats,
+    ) -> Instant {
         let commands = encoder.finish();
         // Passes that the host timed on the way, and pieces, are GPU time, not recording.
         time_ms.gpu += std::mem::take(&mut self.cutting.unaccounted_ms);
         time_ms.upload += ms_since(started.at) - (time_ms.gpu - started.gpu_ms);
         let submitted = Instant::now();
         self.gpu.queue.submit([commands]);
-        self.gpu.wait()?;
-        let ms = ms_since(submitted);
-        time_ms.gpu += ms;
-        Ok(ms)
+        submitted
     }
 
     /// Where the host times passes: submits what is recorded, waits, and starts over with an empty encoder.

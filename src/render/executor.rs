@@ -101,14 +101,31 @@ impl Renderer {
             .copied()
             .filter(|pass| matches!(pass.repeat, Repeat::Light | Repeat::FineLight))
             .collect();
-        for light in 0..if of_lights.is_empty() {
+        let comparing = [
+            of(Repeat::Light),
+            of(Repeat::CoarseLight),
+            of(Repeat::Frame),
+        ];
+        let mut comparison = (!comparing[2].is_empty()).then(|| Comparison::new(facts));
+        let lights = if of_lights.is_empty() {
             0
         } else {
             facts.lights.len()
-        } {
+        };
+        for light in 0..lights {
             check_cancelled(cancel)?;
             let reruns = self.wide_sum_reruns;
-            accounts.extend(self.run_light(facts, light, &of_lights, buffers, &mut time_ms)?);
+            // Of one light what comes after it is known already.
+            let next = comparison.as_mut().filter(|_| lights == 1);
+            let next = next.map(|comparison| (comparison, &comparing));
+            accounts.extend(self.run_light(
+                facts,
+                light,
+                &of_lights,
+                next,
+                buffers,
+                &mut time_ms,
+            )?);
             if self.wide_sum_reruns > reruns {
                 widened.push(collect::widened(facts.lights[light].index));
             }
@@ -119,24 +136,16 @@ impl Renderer {
         }
         let (energy, mut warnings) = collect::energy(facts, &accounts);
         warnings.extend(widened);
-        let estimate = of(Repeat::Frame);
-        let accuracy = if estimate.is_empty() {
-            None
-        } else {
-            let passes = [of(Repeat::Light), of(Repeat::CoarseLight), estimate];
-            let differences = self.compare(facts, &passes, buffers, cancel, &mut time_ms)?;
-            Some(AccuracyStats {
-                estimated_error: collect::estimated_error(facts, &differences),
-                chosen: None,
-            })
-        };
+        if let Some(comparison) = comparison.as_mut().filter(|c| c.sent.is_none()) {
+            self.send_comparison(comparison, facts, &comparing, buffers, cancel, &mut time_ms)?;
+        }
         let mut result = RunResult {
             width: 0,
             height: 0,
             layers: BTreeMap::new(),
             energy,
             planes: collect::planes(facts, &plane_counts),
-            accuracy,
+            accuracy: None,
             warnings,
             time_ms,
             peak_bytes: 0,
@@ -144,9 +153,8 @@ impl Renderer {
             allocated_bytes: None,
         };
         if facts.wanted != Wanted::Frame {
-            return Ok(result);
-        }
-        if let Some(camera) = facts.camera {
+            // Nothing but what has been sent already.
+        } else if let Some(camera) = facts.camera {
             self.run_bands(
                 facts,
                 camera.width,
@@ -157,20 +165,28 @@ impl Renderer {
                 &mut result,
             )?;
         } else {
-            let started = Instant::now();
             self.collect_map(facts, buffers, &mut result)?;
-            result.time_ms.readback += ms_since(started);
+        }
+        if let Some(comparison) = comparison {
+            let time_ms = &mut result.time_ms;
+            let differences =
+                self.read_comparison(comparison, facts, &comparing, buffers, cancel, time_ms)?;
+            result.accuracy = Some(AccuracyStats {
+                estimated_error: collect::estimated_error(facts, &differences),
+                chosen: None,
+            });
         }
         Ok(result)
     }
 
     /// Follows one light and returns its raw account; with narrow flux sums where those are fine enough, and once more with wide
-    /// ones if they wrapped.
+    /// ones if they wrapped. Sends `next` too if that can be recorded while the GPU is at work on the light.
     fn run_light(
         &mut self,
         facts: &SceneFacts,
         index: usize,
         passes: &[&'static PassDesc],
+        mut next: Option<(&mut Comparison, &ComparisonPasses)>,
         buffers: &FrameBuffers,
         time_ms: &mut TimeStats,
     ) -> Result<Vec<u64>, RenderError> {
@@ -185,82 +201,192 @@ impl Renderer {
         loop {
             let run = Run::Light { index, wide_sums };
             let started = Recording::start(time_ms);
-            let mut encoder = self.begin_light(facts, index, wide_sums, buffers);
+            self.set_receivers(facts, index, buffers);
+            let mut encoder = self.begin_light(facts, wide_sums, buffers);
             self.record_all(&mut encoder, &sums, facts, run, buffers, time_ms)?;
             let staged = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
-            self.submit(encoder, started, time_ms)?;
-            let started = Instant::now();
-            let account = staged.read(&self.gpu)?;
-            time_ms.readback += ms_since(started);
+            let submitted = self.send(encoder, started, time_ms);
+            let timed_so_far = self.timing.mark();
+            let mut ahead = Vec::new();
+            if self.runs_in_one_go(&maps, facts, run, buffers) {
+                let mut encoder = self.encoder("light's maps");
+                self.record_all(&mut encoder, &maps, facts, run, buffers, time_ms)?;
+                ahead.push(encoder.finish());
+                if let Some((comparison, passes)) = &mut next {
+                    let recorded = self.record_comparison(comparison, facts, passes, buffers)?;
+                    ahead.extend(recorded.map(wgpu::CommandEncoder::finish));
+                }
+            }
+            self.gpu.wait()?;
+            time_ms.gpu += ms_since(submitted);
+            let account: Vec<u64> = timed(&mut time_ms.readback, || staged.read(&self.gpu))?;
             if !wide_sums && has_wrapped(facts, index, &account) {
                 self.wide_sum_reruns += 1;
                 wide_sums = true;
+                self.timing.forget_since(timed_so_far);
+                if let Some((comparison, _)) = &mut next {
+                    comparison.sent = None;
+                }
                 continue;
             }
             // Only sums that are known to be whole join the maps.
-            let started = Recording::start(time_ms);
-            let mut encoder = self.encoder("light's maps");
-            self.record_all(&mut encoder, &maps, facts, run, buffers, time_ms)?;
-            self.submit(encoder, started, time_ms)?;
+            if ahead.is_empty() {
+                let started = Recording::start(time_ms);
+                let mut encoder = self.encoder("light's maps");
+                self.record_all(&mut encoder, &maps, facts, run, buffers, time_ms)?;
+                self.send(encoder, started, time_ms);
+                return Ok(account);
+            }
+            timed(&mut time_ms.upload, || {
+                let mut ahead = ahead.into_iter();
+                self.gpu.queue.submit(ahead.next());
+                if let (Some((comparison, _)), Some(commands)) = (&next, ahead.next()) {
+                    self.set_receivers(&comparison.coarse, index, buffers);
+                    self.gpu.queue.submit([commands]);
+                }
+            });
             return Ok(account);
         }
     }
 
-    /// Does the light again coarsely, and returns the sums of the differences, workgroup by workgroup.
-    ///
-    /// All of it goes to the GPU without a look at anything on the way; if then an account says that narrow sums wrapped, all of it
-    /// goes once more, with wide ones there.
-    fn compare(
-        &mut self,
+    /// Whether passes can be recorded before their turn: none of them is cut into pieces, or timed by the host, for which it would have
+    /// to run when it is recorded.
+    fn runs_in_one_go(
+        &self,
+        passes: &[&'static PassDesc],
         facts: &SceneFacts,
-        [light, coarse_light, estimate]: &[Vec<&'static PassDesc>; 3],
+        run: Run<'_>,
+        buffers: &FrameBuffers,
+    ) -> bool {
+        let mut steps = passes.iter().flat_map(|pass| (pass.steps)(facts, run));
+        !self.timing.times_by_host() && steps.all(|step| !self.may_be_cut(&step, buffers))
+    }
+
+    /// Records the only light done again coarsely, and its comparison with the maps, if that can be done ahead; its receivers have to be
+    /// set when it is submitted.
+    fn record_comparison(
+        &mut self,
+        comparison: &mut Comparison,
+        facts: &SceneFacts,
+        [light, coarse_light, estimate]: &ComparisonPasses,
+        buffers: &FrameBuffers,
+    ) -> Result<Option<wgpu::CommandEncoder>, RenderError> {
+        let (coarse, wide_sums) = (&comparison.coarse, comparison.wide_sums[0]);
+        let of_light = Run::Light {
+            index: 0,
+            wide_sums,
+        };
+        let of_coarse = Run::CoarseLight {
+            index: 0,
+            wide_sums,
+            fine: facts,
+        };
+        let of_frame = Run::Frame { coarse };
+        let in_one_go = self.runs_in_one_go(light, coarse, of_light, buffers)
+            && self.runs_in_one_go(coarse_light, coarse, of_coarse, buffers)
+            && self.runs_in_one_go(estimate, facts, of_frame, buffers);
+        if !in_one_go {
+            return Ok(None);
+        }
+        let mut encoder = self.begin_light(coarse, wide_sums, buffers);
+        let passes = (light.as_slice(), coarse_light.as_slice());
+        let mut nothing = TimeStats::default();
+        let account = self.record_coarse_light(
+            &mut encoder,
+            (coarse, facts),
+            (0, wide_sums),
+            passes,
+            buffers,
+            &mut nothing,
+        )?;
+        let differences = self.record_estimate(&mut encoder, estimate, coarse, facts, buffers)?;
+        comparison.sent = Some((differences, vec![account]));
+        Ok(Some(encoder))
+    }
+
+    /// Sends the lights done again coarsely, and the comparison with the maps, to the GPU. Nobody waits: what the frame reads next is
+    /// what is waited for.
+    fn send_comparison(
+        &mut self,
+        comparison: &mut Comparison,
+        facts: &SceneFacts,
+        [light, coarse_light, estimate]: &ComparisonPasses,
+        buffers: &FrameBuffers,
+        cancel: &CancellationToken,
+        time_ms: &mut TimeStats,
+    ) -> Result<(), RenderError> {
+        let coarse = &comparison.coarse;
+        let mut started = Recording::start(time_ms);
+        let (mut encoder, accounts) = self.coarse_lights(
+            (coarse, facts),
+            &comparison.wide_sums,
+            (light, coarse_light),
+            buffers,
+            cancel,
+            time_ms,
+        )?;
+        let by_host = self.timing.times_by_host();
+        if by_host {
+            let lights = std::mem::replace(&mut encoder, self.encoder("estimate"));
+            let began = started.at;
+            self.submit(lights, started, time_ms)?;
+            let name = passes::coarse_irradiance::PASS.name;
+            self.timing.note(name, ms_since(began));
+            started = Recording::start(time_ms);
+        }
+        let differences = self.record_estimate(&mut encoder, estimate, coarse, facts, buffers)?;
+        if by_host {
+            let ms = self.submit(encoder, started, time_ms)?;
+            // Where it ran in pieces, those are noted already.
+            self.timing.note(passes::estimate::PASS.name, ms);
+        } else {
+            self.send(encoder, started, time_ms);
+        }
+        comparison.sent = Some((differences, accounts));
+        Ok(())
+    }
+
+    /// Records the comparison of the maps with those of the lights done coarsely, and the copy of what it gives.
+    fn record_estimate(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        estimate: &[&'static PassDesc],
+        coarse: &SceneFacts,
+        facts: &SceneFacts,
+        buffers: &FrameBuffers,
+    ) -> Result<Staged, RenderError> {
+        for pass in estimate {
+            self.record(encoder, pass, facts, Run::Frame { coarse }, buffers, None)?;
+        }
+        let differences = buffers.get(slot_name(Slot::Differences));
+        let bytes = Slot::Differences.bytes(facts);
+        Ok(readback::stage(&self.gpu, encoder, differences, bytes))
+    }
+
+    /// The sums of the differences, workgroup by workgroup. Where an account says that narrow sums of the coarse light wrapped, all of
+    /// it goes once more, with wide ones there.
+    fn read_comparison(
+        &mut self,
+        mut comparison: Comparison,
+        facts: &SceneFacts,
+        passes: &ComparisonPasses,
         buffers: &FrameBuffers,
         cancel: &CancellationToken,
         time_ms: &mut TimeStats,
     ) -> Result<Vec<[f32; 4]>, RenderError> {
-        let coarse = facts.coarse();
-        let lights = 0..coarse.lights.len();
-        let mut wide_sums: Vec<bool> = lights
-            .map(|index| light::needs_wide_sums(&coarse, index))
-            .collect();
         loop {
-            let mut started = Recording::start(time_ms);
-            let (mut encoder, accounts) = self.coarse_lights(
-                (&coarse, facts),
-                &wide_sums,
-                (light, coarse_light),
-                buffers,
-                cancel,
-                time_ms,
-            )?;
-            if self.timing.by_host() {
-                let lights = std::mem::replace(&mut encoder, self.encoder("estimate"));
-                let began = started.at;
-                self.submit(lights, started, time_ms)?;
-                let name = passes::coarse_irradiance::PASS.name;
-                self.timing.note(name, ms_since(began));
-                started = Recording::start(time_ms);
-            }
-            for pass in estimate {
-                let run = Run::Frame { coarse: &coarse };
-                self.record(&mut encoder, pass, facts, run, buffers, None)?;
-            }
-            let differences = buffers.get(slot_name(Slot::Differences));
-            let bytes = Slot::Differences.bytes(facts);
-            let staged = readback::stage(&self.gpu, &mut encoder, differences, bytes);
-            let ms = self.submit(encoder, started, time_ms)?;
-            if self.timing.by_host() {
-                // Where it ran in pieces, those are noted already.
-                self.timing.note(passes::estimate::PASS.name, ms);
-            }
+            let Some((differences, accounts)) = comparison.sent.take() else {
+                let again = &mut comparison;
+                self.send_comparison(again, facts, passes, buffers, cancel, time_ms)?;
+                continue;
+            };
             let started = Instant::now();
-            let differences = staged.read(&self.gpu)?;
+            let differences = differences.read(&self.gpu)?;
             let mut have_wrapped = false;
-            for (index, (account, wide_sums)) in
-                accounts.into_iter().zip(&mut wide_sums).enumerate()
-            {
+            for (index, account) in accounts.into_iter().enumerate() {
                 let account = account.read(&self.gpu)?;
-                if !*wide_sums && has_wrapped(&coarse, index, &account) {
+                let wide_sums = &mut comparison.wide_sums[index];
+                if !*wide_sums && has_wrapped(&comparison.coarse, index, &account) {
                     self.wide_sum_reruns += 1;
                     *wide_sums = true;
                     have_wrapped = true;
@@ -284,48 +410,71 @@ impl Renderer {
         cancel: &CancellationToken,
         time_ms: &mut TimeStats,
     ) -> Result<(wgpu::CommandEncoder, Vec<Staged>), RenderError> {
-        let energy = buffers.get(slot_name(Slot::Energy));
         let mut recorded: Option<wgpu::CommandEncoder> = None;
         let mut accounts = Vec::new();
-        self.timing
-            .group(Some(passes::coarse_irradiance::PASS.name));
         for (index, &wide_sums) in wide_sums.iter().enumerate() {
             check_cancelled(cancel)?;
             // The next light's receivers take the place of this one's, so what reads those has to be on its way.
             if let Some(light) = recorded.take() {
                 self.gpu.queue.submit([light.finish()]);
             }
-            let mut encoder = self.begin_light(coarse, index, wide_sums, buffers);
-            let run = Run::Light { index, wide_sums };
-            self.record_all(&mut encoder, sums, coarse, run, buffers, time_ms)?;
-            let run = Run::CoarseLight {
-                index,
-                wide_sums,
-                fine,
-            };
-            self.record_all(&mut encoder, maps, coarse, run, buffers, time_ms)?;
-            let account = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
-            accounts.push(account);
+            self.set_receivers(coarse, index, buffers);
+            let mut encoder = self.begin_light(coarse, wide_sums, buffers);
+            accounts.push(self.record_coarse_light(
+                &mut encoder,
+                (coarse, fine),
+                (index, wide_sums),
+                (sums, maps),
+                buffers,
+                time_ms,
+            )?);
             recorded = Some(encoder);
         }
-        self.timing.group(None);
         let encoder = recorded.unwrap_or_else(|| self.encoder("estimate"));
         Ok((encoder, accounts))
     }
 
-    /// Sets the receivers of a light and begins its commands, with empty queues and its flux sums at zero.
-    fn begin_light(
-        &self,
-        facts: &SceneFacts,
-        index: usize,
-        wide_sums: bool,
+    /// Records a light done coarsely, all of it timed as one, and the copy of its account.
+    fn record_coarse_light(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        (coarse, fine): (&SceneFacts, &SceneFacts),
+        (index, wide_sums): (usize, bool),
+        (sums, maps): (&[&'static PassDesc], &[&'static PassDesc]),
         buffers: &FrameBuffers,
-    ) -> wgpu::CommandEncoder {
+        time_ms: &mut TimeStats,
+    ) -> Result<Staged, RenderError> {
+        self.timing
+            .group(Some(passes::coarse_irradiance::PASS.name));
+        let run = Run::Light { index, wide_sums };
+        self.record_all(encoder, sums, coarse, run, buffers, time_ms)?;
+        let run = Run::CoarseLight {
+            index,
+            wide_sums,
+            fine,
+        };
+        self.record_all(encoder, maps, coarse, run, buffers, time_ms)?;
+        self.timing.group(None);
+        let energy = buffers.get(slot_name(Slot::Energy));
+        Ok(readback::stage(&self.gpu, encoder, energy, ACCOUNT_BYTES))
+    }
+
+    /// Sets the receivers of a light, for what is submitted from now on.
+    fn set_receivers(&self, facts: &SceneFacts, index: usize, buffers: &FrameBuffers) {
         if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
             let receivers = self.receivers(facts, index);
             let bytes = bytemuck::cast_slice(&receivers);
             self.gpu.queue.write_buffer(buffer, 0, bytes);
         }
+    }
+
+    /// Begins a light's commands, with empty queues and its flux sums at zero.
+    fn begin_light(
+        &self,
+        facts: &SceneFacts,
+        wide_sums: bool,
+        buffers: &FrameBuffers,
+    ) -> wgpu::CommandEncoder {
         let mut encoder = self.encoder("light");
         clear_for_light(&mut encoder, buffers, slot::flux_bytes(facts, wide_sums));
         encoder
@@ -408,7 +557,7 @@ impl Renderer {
     }
 
     fn collect_map(
-        &self,
+        &mut self,
         facts: &SceneFacts,
         buffers: &FrameBuffers,
         result: &mut RunResult,
@@ -418,11 +567,16 @@ impl Renderer {
         let texels = map.width as usize * map.height as usize;
         let mut values = vec![0.0_f32; 3 * texels];
         if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Irradiance)) {
-            let all: Vec<f32> =
-                readback::read(&self.gpu, buffer, 12 * (map.first_texel + texels as u64))?;
+            let started = Recording::start(&result.time_ms);
+            let mut encoder = self.encoder("map");
+            let bytes = 12 * (map.first_texel + texels as u64);
+            let staged = readback::stage(&self.gpu, &mut encoder, buffer, bytes);
+            self.submit(encoder, started, &mut result.time_ms)?;
+            let all: Vec<f32> = timed(&mut result.time_ms.readback, || staged.read(&self.gpu))?;
             values.copy_from_slice(&all[3 * map.first_texel as usize..][..3 * texels]);
         }
         let mut cosines = None;
+        let started = Instant::now();
         if let (Some(key), true) = (&map.level_map, !facts.lights.is_empty()) {
             let arena = self.arena.as_ref().zip(self.level_maps.offset(key));
             if let Some((arena, offset)) = arena {
@@ -430,6 +584,7 @@ impl Renderer {
             }
         }
         let layer = collect::finish_map(facts, &map, values, cosines.as_deref())?;
+        result.time_ms.readback += ms_since(started);
         result.layers.insert(LayerName::Irradiance, layer);
         Ok(())
     }
@@ -499,6 +654,40 @@ impl Renderer {
         }
         Ok(())
     }
+}
+
+/// Passes of a light that is done again coarsely: those that make its sums, those that take them, and those that compare.
+type ComparisonPasses = [Vec<&'static PassDesc>; 3];
+
+/// The light done again coarsely, to be compared with the frame's maps.
+struct Comparison {
+    coarse: SceneFacts,
+    /// Of each light, whether its sums are wide.
+    wide_sums: Vec<bool>,
+    /// The differences and the lights' accounts, on their way.
+    sent: Option<(Staged, Vec<Staged>)>,
+}
+
+impl Comparison {
+    fn new(facts: &SceneFacts) -> Self {
+        let coarse = facts.coarse();
+        let lights = 0..coarse.lights.len();
+        Self {
+            wide_sums: lights
+                .map(|index| light::needs_wide_sums(&coarse, index))
+                .collect(),
+            coarse,
+            sent: None,
+        }
+    }
+}
+
+/// What `work` gives, its time added.
+fn timed<T>(ms: &mut f64, work: impl FnOnce() -> T) -> T {
+    let started = Instant::now();
+    let result = work();
+    *ms += ms_since(started);
+    result
 }
 
 /// Whether the account of a light says that its narrow sums wrapped.

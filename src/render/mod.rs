@@ -231,8 +231,10 @@ impl Renderer {
         let plan = plan::plan_scene(&facts, self)?;
         let plan_ms = ms_since(started);
         let cache_before = self.level_maps.stats();
+        let ran = Instant::now();
         let run = self.run(resolved, &facts, &plan, cancel)?;
-        let gpu_times = self.timing.collect(&self.gpu, run.time_ms.gpu)?;
+        // Some of the work is done while more is recorded, so that it takes longer than anybody waits.
+        let gpu_times = self.timing.collect(&self.gpu, ms_since(ran))?;
         let mut stats = Stats {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scene_hash: asked.hash(),
@@ -356,6 +358,12 @@ impl Renderer {
     /// Whether frames report what the GPU's allocator has given out (`stats.memory.allocated_bytes`).
     pub fn watch_allocator(&mut self, on: bool) {
         self.watches_allocator = on;
+    }
+
+    /// Whether passes are timed where only the host can do that, which has to submit each on its own and wait for it. So it is unless
+    /// told otherwise; without it such frames tell no times of passes, and go to the adapter as they do where it has a clock.
+    pub fn time_by_host(&mut self, on: bool) {
+        self.timing.allow_host(&self.gpu, on);
     }
 
     /// Most workgroups that run as one piece, whatever their time; `None`: pieces are cut by their time, of long dispatches only.

@@ -8,7 +8,7 @@ use super::buffers::FrameBuffers;
 use super::{RenderError, Renderer, ms_since};
 use crate::gpu::pieces::{Piece, next_size};
 use crate::gpu::readback;
-use crate::passes::desc::Groups;
+use crate::passes::desc::{Groups, Step, Work};
 use crate::passes::slot::Slot;
 
 /// Workgroups that run in one go, and first piece of a larger dispatch: about what the largest GPUs hold at once.
@@ -18,6 +18,15 @@ const FIRST_QUEUE_GROUPS: u64 = 256;
 /// Words of a queue or of the flux sums up to which queues are emptied in one go: how many workgroups that takes only the GPU
 /// knows, and asking costs a small frame more than it could save.
 const SHORT_WORDS: u64 = 1 << 22;
+
+fn words(slot: Slot, buffers: &FrameBuffers) -> u64 {
+    buffers.get(slot.info().name).size() / 4
+}
+
+/// Whether a queue is emptied in one go.
+fn is_short(queue: Slot, buffers: &FrameBuffers) -> bool {
+    words(queue, buffers).max(words(Slot::Flux, buffers)) <= SHORT_WORDS
+}
 
 /// How dispatches are cut, and what came of it.
 #[derive(Debug, Default)]
@@ -45,6 +54,26 @@ impl Cutting {
 }
 
 impl Renderer {
+    /// Whether a step's dispatch may be cut, so that it runs when it is recorded.
+    pub(super) fn may_be_cut(&self, step: &Step, buffers: &FrameBuffers) -> bool {
+        let groups = match step.work {
+            Work::Compute(groups) => groups,
+            Work::StoreLayer { groups, .. } | Work::OverSlice { groups, .. } => {
+                Groups::Direct(groups)
+            }
+            Work::DrawSlice { .. } | Work::DrawLevelMap { .. } => return false,
+        };
+        match groups {
+            Groups::Direct(all) => {
+                let most = self.cutting.most_groups.unwrap_or(FIRST_GROUPS);
+                all.map(u64::from).iter().product::<u64>() > most
+            }
+            Groups::Queue(slot) | Groups::QueueAt(slot, _) => {
+                self.cutting.most_groups.is_some() || !is_short(slot, buffers)
+            }
+        }
+    }
+
     /// The workgroups of a dispatch that is to be cut and the most of its first piece; `None` where it runs in one go. What is in
     /// `encoder` is submitted where the GPU has to be asked how many there are.
     pub(super) fn cut_of(
@@ -58,15 +87,14 @@ impl Renderer {
         let (all, first) = match groups {
             Groups::Direct(all) => (all, FIRST_GROUPS),
             Groups::Queue(slot) | Groups::QueueAt(slot, _) => {
-                let words = |slot: Slot| buffers.get(slot.info().name).size() / 4;
-                if asked.is_none() && words(slot).max(words(Slot::Flux)) <= SHORT_WORDS {
+                if asked.is_none() && is_short(slot, buffers) {
                     return Ok(None);
                 }
                 self.submit_now(encoder, pass)?;
                 let read: Vec<u32> = readback::read(&self.gpu, &buffers.indirect, 12)?;
                 let all = <[u32; 3]>::try_from(read.as_slice()).unwrap_or_default();
                 // As much to do as the full number has on the largest maps that are emptied in one go.
-                let larger = words(Slot::Flux).div_ceil(SHORT_WORDS).max(1);
+                let larger = words(Slot::Flux, buffers).div_ceil(SHORT_WORDS).max(1);
                 (all, (FIRST_QUEUE_GROUPS / larger).max(1))
             }
         };

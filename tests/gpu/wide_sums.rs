@@ -3,7 +3,7 @@
 use caustica::accuracy::metrics::relative_l1;
 use serde_json::{Value, json};
 
-use super::harness::{Map, renderer};
+use super::harness::{Map, render_with, renderer};
 use super::scene_files;
 use super::symmetry::pooled;
 
@@ -100,4 +100,52 @@ fn a_coarse_light_that_overflows_narrow_sums_is_done_again() {
     );
     let ratio = estimated / (between / 0.75);
     assert!((0.4..=2.5).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn what_is_recorded_ahead_of_a_look_at_the_sums_gives_the_same() {
+    let estimating = |mut scene: Value| {
+        scene["quality"]["estimate_error"] = json!(true);
+        scene
+    };
+    let sun = |azimuth: f64| json!({ "kind": "sun", "elevation_deg": 60, "azimuth_deg": azimuth, "irradiance_w_m2": [1, 2, 3] });
+    let mut two_suns = focus(64, 64);
+    two_suns["lights"] = json!([sun(0.0), sun(70.0)]);
+    let mut view = focus(64, 96);
+    view["objects"] = json!([{ "mesh": "box.obj", "translation_m": [0, -1, 0], "scale": 0.4 }]);
+    view["camera"] = json!({ "position_m": [0, 2, 2], "target_m": [0, -1.5, 0] });
+    view["output"] = json!({ "kind": "view", "width": 64, "height": 36, "format": "exr", "layers": ["irradiance", "radiance"] });
+    // Fine sums wrap in the first two, coarse ones too in the second; the third is cut into pieces.
+    let scenes = [
+        focus(512, 512),
+        estimating(focus(1024, 512)),
+        estimating(focus(64, 1024)),
+        estimating(focus(64, 64)),
+        estimating(two_suns),
+        view.clone(),
+        estimating(view),
+    ];
+    let mut all_reruns = Vec::new();
+    for (nth, scene) in scenes.into_iter().enumerate() {
+        let resolved = scene_files::scene(scene);
+        let mut renderer = renderer();
+        let before = renderer.wide_sum_reruns();
+        let timed = render_with(&mut renderer, &resolved);
+        let reruns = renderer.wide_sum_reruns() - before;
+        all_reruns.push(reruns);
+        let before = renderer.wide_sum_reruns();
+        renderer.time_by_host(false);
+        let untimed = render_with(&mut renderer, &resolved);
+        let again = render_with(&mut renderer, &resolved);
+        renderer.time_by_host(true);
+        assert_eq!(renderer.wide_sum_reruns() - before, 2 * reruns, "{nth}");
+        for frame in [&untimed, &again] {
+            assert!(timed.layers == frame.layers, "{nth}");
+            assert_eq!(timed.stats.energy, frame.stats.energy, "{nth}");
+            assert_eq!(timed.stats.accuracy, frame.stats.accuracy, "{nth}");
+            assert_eq!(timed.stats.warnings, frame.stats.warnings, "{nth}");
+        }
+        assert!(timed.stats.passes.iter().all(|pass| pass.gpu_ms.is_some()));
+    }
+    assert_eq!(all_reruns[..2], [1, 2]);
 }
