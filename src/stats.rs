@@ -79,7 +79,7 @@ pub struct TimeStats {
     pub plan: f64,
     /// Uploads and recording.
     pub upload: f64,
-    /// From submission until the GPU was done.
+    /// From submission until the GPU was done; what was recorded meanwhile is not taken off.
     pub gpu: f64,
     /// Copying results to the host.
     pub readback: f64,
@@ -220,7 +220,7 @@ pub struct Warning {
     /// JSON pointer to the cause, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pointer: Option<String>,
-    /// Flux concerned, W per channel, where it was measured.
+    /// Flux concerned, W per channel: measured by the frame, or estimated before it from a sample of rays.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flux_w: Option<[f64; 3]>,
 }

@@ -127,6 +127,7 @@ fn look_from_air(ray: Ray) -> Pixel {
     let limit = select(VERY_FAR_M, t_water, t_water >= 0.0);
     let dry = trace_scene(ray, 0.0, limit);
     if dry.receiver >= 0 {
+        notes = 0.0; // before the march's end
         return Pixel(dry, ray.origin + ray.direction * dry.t, dry.t, 0.0, 1.0, 0.0, 0.0);
     }
     let nothing = Seen(0.0, -1, vec3f(0.0), vec3f(0.0));
@@ -149,6 +150,7 @@ fn look_from_water(ray: Ray) -> Pixel {
     let limit = select(VERY_FAR_M, t_water, t_water >= 0.0);
     let wet = trace_scene(ray, 0.0, limit);
     if wet.receiver >= 0 {
+        notes = 0.0; // before the march's end
         return Pixel(wet, ray.origin + ray.direction * wet.t, wet.t, wet.t, 1.0, 0.0, 0.0);
     }
     let nothing = Seen(0.0, -1, vec3f(0.0), vec3f(0.0));

@@ -41,7 +41,7 @@ pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<()
         Renderer::new(config)?.plan(&scene.resolved, &CancellationToken::new())?
     } else {
         // For an empty GPU: no device is opened, so a plan can be had anywhere.
-        let facts = SceneFacts::of(&scene.resolved).map_err(RenderError::from)?;
+        let facts = SceneFacts::with_warnings(&scene.resolved).map_err(RenderError::from)?;
         let empty = NothingCached {
             arena_bytes: config.level_map_budget_bytes(),
         };

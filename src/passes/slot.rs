@@ -286,7 +286,7 @@ impl Slot {
             ),
             Self::VisibleTransport => (
                 "visible_transport",
-                "weights of surface and sky per pixel",
+                "weights of surface and sky, way of the sky's light m, notes per pixel",
                 Lifetime::Band,
             ),
             Self::VisibleIrradiance => (
@@ -296,7 +296,7 @@ impl Slot {
             ),
             Self::Radiance => (
                 "radiance",
-                "linear RGB per pixel, W/(m² sr), and 1 where the floor's map was too small",
+                "linear RGB per pixel, W/(m² sr), and notes",
                 Lifetime::Band,
             ),
         };
@@ -399,15 +399,26 @@ pub fn draw_target_bytes(key: &LevelMapKey) -> u64 {
     per_texel * u64::from(key.texels) * u64::from(key.texels)
 }
 
-/// Bytes of the largest result that is copied to the host at once.
-pub fn readback_bytes(facts: &SceneFacts) -> u64 {
-    match facts.camera {
-        Some(camera) => {
-            16 * u64::from(camera.width) * u64::from(band_rows(camera.width, camera.height))
-        }
-        None if facts.lights.is_empty() => 0,
-        None => 12 * MapLayout::of(facts).irradiance_texels(),
+/// Bytes of the estimate's sums, which wait for the host beside any other result.
+pub fn differences_beside(facts: &SceneFacts) -> u64 {
+    if facts.quality.estimate_error && !facts.lights.is_empty() {
+        Slot::Differences.bytes(facts)
+    } else {
+        0
     }
+}
+
+/// Bytes of the largest result that is copied to the host at once, and of what waits beside it.
+pub fn readback_bytes(facts: &SceneFacts) -> u64 {
+    let beside = differences_beside(facts);
+    beside
+        + match facts.camera {
+            Some(camera) => {
+                16 * u64::from(camera.width) * u64::from(band_rows(camera.width, camera.height))
+            }
+            None if facts.lights.is_empty() => 0,
+            None => 12 * MapLayout::of(facts).irradiance_texels(),
+        }
 }
 
 /// Parts of straddling beams that a level of the split queue holds: what has been halved less than `split_levels` times is queued,

@@ -321,7 +321,7 @@ fn slots(
         (
             "readback",
             readback_bytes,
-            "the largest result on its way to the host",
+            "the largest result on its way to the host, and an estimate's sums",
         ),
         (
             "sundry",

@@ -42,6 +42,7 @@ impl Renderer {
             + slices.map_or(0, |planned| planned.bytes)
             + targets.unwrap_or(0)
             + self.gpu.take_readback_peak()
+            + slot::differences_beside(facts)
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
             + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes);
         let report = self
@@ -118,20 +119,13 @@ impl Renderer {
             // Of one light what comes after it is known already.
             let next = comparison.as_mut().filter(|_| lights == 1);
             let next = next.map(|comparison| (comparison, &comparing));
-            accounts.extend(self.run_light(
-                facts,
-                light,
-                &of_lights,
-                next,
-                buffers,
-                &mut time_ms,
-            )?);
+            let found = self.run_light(facts, light, &of_lights, next, buffers, &mut time_ms)?;
+            if let Some((account, counts)) = found {
+                accounts.extend(account);
+                plane_counts.extend(counts);
+            }
             if self.wide_sum_reruns > reruns {
                 widened.push(collect::widened(facts.lights[light].index));
-            }
-            if let Some(buffer) = buffers.by_name.get(slot_name(Slot::PlaneCounts)) {
-                let bytes = Slot::PlaneCounts.bytes(facts);
-                plane_counts.push(readback::read(&self.gpu, buffer, bytes)?);
             }
         }
         let (energy, mut warnings) = collect::energy(facts, &accounts);
@@ -179,8 +173,8 @@ impl Renderer {
         Ok(result)
     }
 
-    /// Follows one light and returns its raw account; with narrow flux sums where those are fine enough, and once more with wide
-    /// ones if they wrapped. Sends `next` too if that can be recorded while the GPU is at work on the light.
+    /// Follows one light and returns its raw account, and the counts of its planes where there are any; with narrow flux sums where
+    /// those are fine enough, and once more with wide ones if they wrapped. Sends `next` too if that can be recorded while the GPU is at work on the light.
     fn run_light(
         &mut self,
         facts: &SceneFacts,
@@ -189,10 +183,11 @@ impl Renderer {
         mut next: Option<(&mut Comparison, &ComparisonPasses)>,
         buffers: &FrameBuffers,
         time_ms: &mut TimeStats,
-    ) -> Result<Vec<u64>, RenderError> {
+    ) -> Result<Option<LightSums>, RenderError> {
         let Some(energy) = buffers.by_name.get(slot_name(Slot::Energy)) else {
-            return Ok(Vec::new());
+            return Ok(None);
         };
+        let planes = buffers.by_name.get(slot_name(Slot::PlaneCounts));
         let (sums, maps): (Vec<&'static PassDesc>, Vec<&'static PassDesc>) = passes
             .iter()
             .copied()
@@ -205,6 +200,10 @@ impl Renderer {
             let mut encoder = self.begin_light(facts, wide_sums, buffers);
             self.record_all(&mut encoder, &sums, facts, run, buffers, time_ms)?;
             let staged = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
+            let staged_counts = planes.map(|buffer| {
+                let bytes = Slot::PlaneCounts.bytes(facts);
+                readback::stage(&self.gpu, &mut encoder, buffer, bytes)
+            });
             let submitted = self.send(encoder, started, time_ms);
             let timed_so_far = self.timing.mark();
             let mut ahead = Vec::new();
@@ -219,7 +218,11 @@ impl Renderer {
             }
             self.gpu.wait()?;
             time_ms.gpu += ms_since(submitted);
-            let account: Vec<u64> = timed(&mut time_ms.readback, || staged.read(&self.gpu))?;
+            let started = Instant::now();
+            let account: Vec<u64> = staged.read(&self.gpu)?;
+            let counts = staged_counts.map(|staged| staged.read(&self.gpu));
+            let counts: Option<Vec<[u32; 4]>> = counts.transpose()?;
+            time_ms.readback += ms_since(started);
             if !wide_sums && has_wrapped(facts, index, &account) {
                 self.wide_sum_reruns += 1;
                 wide_sums = true;
@@ -235,8 +238,9 @@ impl Renderer {
                 let mut encoder = self.encoder("light's maps");
                 self.record_all(&mut encoder, &maps, facts, run, buffers, time_ms)?;
                 self.send(encoder, started, time_ms);
-                return Ok(account);
+                return Ok(Some((account, counts)));
             }
+            self.recorded_ahead += 1;
             timed(&mut time_ms.upload, || {
                 let mut ahead = ahead.into_iter();
                 self.gpu.queue.submit(ahead.next());
@@ -245,7 +249,7 @@ impl Renderer {
                     self.gpu.queue.submit([commands]);
                 }
             });
-            return Ok(account);
+            return Ok(Some((account, counts)));
         }
     }
 
@@ -380,6 +384,7 @@ impl Renderer {
                 self.send_comparison(again, facts, passes, buffers, cancel, time_ms)?;
                 continue;
             };
+            timed(&mut time_ms.gpu, || self.gpu.wait())?;
             let started = Instant::now();
             let differences = differences.read(&self.gpu)?;
             let mut have_wrapped = false;
@@ -655,6 +660,9 @@ impl Renderer {
         Ok(())
     }
 }
+
+/// What a light's sums came to: its raw account, and the counts of its planes.
+type LightSums = (Vec<u64>, Option<Vec<[u32; 4]>>);
 
 /// Passes of a light that is done again coarsely: those that make its sums, those that take them, and those that compare.
 type ComparisonPasses = [Vec<&'static PassDesc>; 3];

@@ -105,6 +105,7 @@ pub struct Renderer {
     /// Polls since the last frame.
     idle_polls: u32,
     wide_sum_reruns: u64,
+    recorded_ahead: u64,
     watches_allocator: bool,
     cutting: pieces::Cutting,
 }
@@ -151,6 +152,7 @@ impl Renderer {
             calibration: config.calibration.clone().unwrap_or_default(),
             idle_polls: 0,
             wide_sum_reruns: 0,
+            recorded_ahead: 0,
             watches_allocator: false,
             cutting: pieces::Cutting::default(),
         })
@@ -182,7 +184,7 @@ impl Renderer {
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError> {
         let tuned = self.tuned(resolved, cancel)?;
-        let facts = SceneFacts::of(tuned.as_ref().map_or(resolved, |(scene, _)| scene))?;
+        let facts = SceneFacts::with_warnings(tuned.as_ref().map_or(resolved, |(scene, _)| scene))?;
         let mut plan = plan::plan_scene(&facts, self)?;
         plan.chosen = tuned.map(|(_, chosen)| chosen);
         Ok(plan)
@@ -227,7 +229,7 @@ impl Renderer {
         let tuned = self.tuned(resolved, cancel)?;
         let asked = resolved;
         let resolved = tuned.as_ref().map_or(asked, |(scene, _)| scene);
-        let facts = SceneFacts::of(resolved)?;
+        let facts = SceneFacts::with_warnings(resolved)?;
         let plan = plan::plan_scene(&facts, self)?;
         let plan_ms = ms_since(started);
         let cache_before = self.level_maps.stats();
@@ -353,6 +355,11 @@ impl Renderer {
     /// How often since the start a light was followed again because its narrow flux sums had wrapped.
     pub fn wide_sum_reruns(&self) -> u64 {
         self.wide_sum_reruns
+    }
+
+    /// How often since the start what comes after a light was recorded while the GPU was at work on it.
+    pub fn recorded_ahead(&self) -> u64 {
+        self.recorded_ahead
     }
 
     /// Whether frames report what the GPU's allocator has given out (`stats.memory.allocated_bytes`).

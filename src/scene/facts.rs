@@ -164,7 +164,7 @@ pub struct SceneFacts {
 }
 
 impl SceneFacts {
-    /// The facts of a validated scene.
+    /// The facts of a validated scene; of its warnings only those about lights that are left out.
     pub fn of(resolved: &ResolvedScene) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let origin_m = origin(resolved);
@@ -215,6 +215,13 @@ impl SceneFacts {
         facts.want_output(&scene.output, scene.camera.as_ref());
         facts.size_maps();
         facts.find_lights(resolved)?;
+        Ok(facts)
+    }
+
+    /// The same with all that the scene tells is left out: for a plan or a frame. That looks for shadows with rays through the meshes,
+    /// which nothing but the warnings needs.
+    pub fn with_warnings(resolved: &ResolvedScene) -> Result<Self, SceneError> {
+        let mut facts = Self::of(resolved)?;
         let found = warnings::warnings(&facts, resolved);
         facts.warnings.extend(found);
         Ok(facts)
@@ -378,8 +385,8 @@ impl SceneFacts {
             let window = window.ok_or_else(|| SceneError {
                 issues: vec![Issue::invalid(
                     format!("/lights/{index}"),
-                    "the refracted light cannot be followed to the receivers",
-                    "a light that goes down into the water",
+                    "no refracted light of it was found on its way to the receivers; what falls less than a metre in a kilometre under water is not followed",
+                    "a light whose rays fall more steeply under water",
                 )],
             })?;
             self.lights.push(LightFacts {

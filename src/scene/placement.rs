@@ -43,6 +43,8 @@ pub(super) struct Across {
     pub(super) width_m: f64,
     /// Its area, m².
     pub(super) area_m2: f64,
+    /// Area of its largest face, m².
+    pub(super) largest_m2: f64,
 }
 
 impl ObjectFacts {
@@ -69,6 +71,7 @@ impl ObjectFacts {
         Across {
             width_m: if width_m.is_finite() { width_m } else { 0.0 },
             area_m2: faces.iter().map(|face| face.dot(axis).abs()).sum(),
+            largest_m2: faces.iter().map(|face| face.length()).fold(0.0, f64::max),
         }
     }
 }

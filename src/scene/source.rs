@@ -1,5 +1,7 @@
 //! Where the light of a sun or point light comes from, and the grid that samples it.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec2, DVec3};
 
 use super::Light;
@@ -103,17 +105,32 @@ impl Source {
         }
     }
 
-    /// Most that falls on a square metre across its rays at height `y_m` under flat water, of a light of unit power: 1 of a sun's
-    /// irradiance before the water, 1/m² of a point light's intensity.
-    pub(super) fn most_at(&self, target_m: DVec3, ior: f64) -> f64 {
+    /// Most flux that goes to `area_m2` across its rays around a place under flat water, of a light of unit power: m² of a sun, sr of
+    /// a point light, near which an area takes half of all directions at most. What is absorbed is not taken off.
+    pub(super) fn most_onto(&self, middle_m: DVec3, area_m2: f64, ior: f64) -> f64 {
+        let within = |distance2_m2: f64| {
+            if area_m2 > 0.0 {
+                area_m2 / (distance2_m2 + area_m2 / TAU)
+            } else {
+                0.0
+            }
+        };
         match *self {
             Self::Sun { to_light } => {
                 let enters = fresnel_transmittance(to_light.y, ior) * to_light.y;
-                self.direction_at(target_m, ior)
-                    .map_or(0.0, |way| enters / -way.y)
+                self.direction_at(middle_m, ior)
+                    .map_or(0.0, |way| area_m2 * enters / -way.y)
             }
-            Self::Point { .. } => self.seeming_height_m(target_m.y, ior).powi(-2),
-            Self::Submerged { position_m } => (target_m - position_m).length_squared().recip(),
+            Self::Point { position_m } => {
+                let sideways =
+                    DVec2::new(middle_m.x - position_m.x, middle_m.z - position_m.z).length();
+                within(
+                    sideways
+                        .hypot(self.seeming_height_m(middle_m.y, ior))
+                        .powi(2),
+                )
+            }
+            Self::Submerged { position_m } => within((middle_m - position_m).length_squared()),
         }
     }
 

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
 use super::facts::{LightFacts, SceneFacts};
 use super::placement::ObjectFacts;
@@ -12,6 +12,7 @@ use super::source::Source;
 use super::window::Rect;
 use crate::mesh::{Mesh, hierarchy};
 use crate::physics::fresnel::fresnel_transmittance;
+use crate::physics::octahedral::octahedral_place;
 use crate::physics::refraction::refract_direction;
 use crate::physics::solid_angle::solid_angle;
 
@@ -19,34 +20,53 @@ use crate::physics::solid_angle::solid_angle;
 const MOST_SIDE: u32 = 32;
 /// Fewest of them, where many objects share the rays.
 const LEAST_SIDE: u32 = 4;
-/// Rays of a scene, as long as there are enough places for each object and light.
+/// Rays of a scene for each thing that is looked for, as long as each object and light gets a few.
 const RAYS: f64 = 32_768.0;
-/// Directions around a light within an object.
-const DIRECTIONS: u32 = 1024;
+/// Directions around a light within an object, at most and at least.
+const DIRECTIONS: [f64; 2] = [64.0, 1024.0];
 /// Farther than anything in a scene, m.
 const EVERYWHERE_M: f64 = 1e9;
+/// How far behind its origin a ray still meets something, as a share of the object's size: what lies in the plane that rays start from
+/// counts.
+const BEHIND: f64 = 1e-6;
 
 /// Light that objects stop, of the lights of a scene whose windows are known.
 pub(super) struct Stopped<'a> {
     facts: &'a SceneFacts,
     meshes: &'a [Arc<Mesh>],
+    mesh_from_local: Vec<DAffine3>,
     side: u32,
+    directions: u32,
 }
 
 impl<'a> Stopped<'a> {
     /// `meshes` are those of the scene's objects, one each.
     pub(super) fn new(facts: &'a SceneFacts, meshes: &'a [Arc<Mesh>]) -> Self {
-        let shared_by = (facts.objects.len() * facts.lights.len()).max(1) as f64;
-        let side = (RAYS / shared_by).sqrt() as u32;
+        let pairs = facts.objects.len() * facts.lights.len();
+        let side = (RAYS / pairs.max(1) as f64).sqrt() as u32;
+        let positions = facts.lights.iter().filter_map(|l| l.source.position_m());
+        let within: usize = positions
+            .map(|position_m| {
+                let mut around = facts.objects.iter().map(|o| is_around(o, position_m));
+                around.by_ref().filter(|&is| is).count()
+            })
+            .sum();
+        let [fewest, most] = DIRECTIONS;
         Self {
             facts,
             meshes,
+            mesh_from_local: facts
+                .objects
+                .iter()
+                .map(|object| object.local_from_mesh.inverse())
+                .collect(),
             side: side.clamp(LEAST_SIDE, MOST_SIDE),
+            directions: (RAYS / within.max(1) as f64).clamp(fewest, most) as u32,
         }
     }
 
-    /// Flux into the water that the part of an object above the water at rest stops, all lights together, W; each object for itself,
-    /// as if the others were not there.
+    /// Flux onto the water, before its reflection, that the part of an object above the water at rest stops, all lights together, W; each
+    /// object for itself, as if the others were not there.
     pub(super) fn above_water_w(&self, object: usize) -> [f64; 3] {
         self.of_all_lights(|light| self.unit_flux_above(object, light))
     }
@@ -59,10 +79,10 @@ impl<'a> Stopped<'a> {
 
     /// Flux that a light within the bounds of an object sends onto it, W.
     pub(super) fn onto_w(&self, object: usize, position_m: DVec3, power: [f64; 3]) -> [f64; 3] {
-        let onto = sphere(DIRECTIONS)
+        let onto = sphere(self.directions)
             .filter(|&direction| self.meets(object, position_m, direction, EVERYWHERE_M))
             .count();
-        let share = onto as f64 / f64::from(DIRECTIONS);
+        let share = onto as f64 / f64::from(self.directions);
         power.map(|i| 2.0 * TAU * i * share)
     }
 
@@ -80,6 +100,9 @@ impl<'a> Stopped<'a> {
     /// Flux of a light of unit power that the dry part of an object keeps from the water, m² or sr.
     fn unit_flux_above(&self, object: usize, light: &LightFacts) -> f64 {
         let bounds = &self.facts.objects[object];
+        if let Source::Sun { to_light } = light.source {
+            return self.silhouette_m2(object, to_light, light.window);
+        }
         let Some(rect) = shadow_on_water(bounds, light) else {
             return 0.0;
         };
@@ -91,23 +114,61 @@ impl<'a> Stopped<'a> {
         places(rect, self.side).filter_map(falls).sum()
     }
 
+    /// Area that the dry part of an object shows a sun, as far as its shadow falls on a piece of the water at rest, m².
+    fn silhouette_m2(&self, object: usize, to_light: DVec3, window: Rect) -> f64 {
+        let bounds = &self.facts.objects[object];
+        if bounds.max.y < 0.0 {
+            return 0.0;
+        }
+        let low = bounds.min.with_y(bounds.min.y.max(0.0));
+        let (u, v) = to_light.any_orthonormal_pair();
+        let seen =
+            corners(low, bounds.max).map(|p| DVec3::new(p.dot(u), p.dot(v), p.dot(to_light)));
+        let [min, max] = [
+            seen.into_iter().fold(DVec3::INFINITY, DVec3::min),
+            seen.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max),
+        ];
+        let before_m = min.z - BEHIND * (max - min).length();
+        let step_m = (max - min).truncate() / f64::from(self.side);
+        let shadowed = (0..self.side * self.side).filter(|k| {
+            let nth = DVec2::new(f64::from(k % self.side), f64::from(k / self.side)) + 0.5;
+            let at = min.truncate() + step_m * nth;
+            let mut from_m = u * at.x + v * at.y + to_light * before_m;
+            let foot_m = from_m - to_light * (from_m.y / to_light.y);
+            if from_m.y < 0.0 {
+                from_m = foot_m;
+            }
+            window.holds(DVec2::new(foot_m.x, foot_m.z))
+                && self.meets(object, from_m, to_light, EVERYWHERE_M)
+        });
+        shadowed.count() as f64 * step_m.element_product()
+    }
+
     /// Flux of a light of unit power that is stopped a second and further times, m² or sr.
     fn unit_flux_again(&self, light: &LightFacts) -> f64 {
         let again = |from_m: DVec3, direction: DVec3| {
+            // What goes up ends at the water.
+            let reach_m = if direction.y > 0.0 {
+                -from_m.y.min(0.0) / direction.y
+            } else {
+                EVERYWHERE_M
+            };
             let met = self
                 .facts
                 .wet_objects()
-                .filter(|&object| self.meets(object, from_m, direction, EVERYWHERE_M));
+                .filter(|&object| self.meets(object, from_m, direction, reach_m));
             met.count().saturating_sub(1) as f64
         };
         let wet = self.facts.wet_objects().count().max(1) as f64;
-        let rays = (RAYS / (wet * self.facts.lights.len() as f64)).max(64.0);
+        let rays = (RAYS / (wet * self.facts.lights.len() as f64)).clamp(64.0, 4096.0);
         let window = match (light.source, light.objects_window) {
             (Source::Submerged { position_m }, _) => {
-                let directions = (rays as u32).min(4 * DIRECTIONS);
-                let sum: f64 = sphere(directions)
-                    .map(|direction| again(position_m, direction))
-                    .sum();
+                let directions = rays as u32;
+                let is_all = light.window.holds(DVec2::NEG_ONE) && light.window.holds(DVec2::ONE);
+                let followed = sphere(directions).filter(|&direction| {
+                    is_all || direction.y < 0.0 && light.window.holds(octahedral_place(direction))
+                });
+                let sum: f64 = followed.map(|direction| again(position_m, direction)).sum();
                 return sum * 2.0 * TAU / f64::from(directions);
             }
             (_, Some(objects)) => objects.within(light.window),
@@ -127,19 +188,36 @@ impl<'a> Stopped<'a> {
     /// Whether a ray meets an object before `reach_m`; `direction` has unit length.
     fn meets(&self, object: usize, from_m: DVec3, direction: DVec3, reach_m: f64) -> bool {
         let mesh = &self.meshes[object];
-        let mesh_from_local = self.facts.objects[object].local_from_mesh.inverse();
+        let mesh_from_local = &self.mesh_from_local[object];
         let along = mesh_from_local.transform_vector3(direction);
         let per_m = along.length();
+        let behind = BEHIND * f64::from((mesh.max_m - mesh.min_m).length());
         let hit = hierarchy::first_hit(
             &mesh.hierarchy,
             &mesh.triangles,
             mesh_from_local.transform_point3(from_m).as_vec3(),
             (along / per_m).as_vec3(),
-            0.0,
+            -behind as f32,
             (reach_m * per_m).min(f64::from(f32::MAX)) as f32,
         );
         hit.is_some()
     }
+}
+
+/// Whether a place is within the bounds of an object.
+pub(super) fn is_around(object: &ObjectFacts, position_m: DVec3) -> bool {
+    position_m.cmpge(object.min).all() && position_m.cmple(object.max).all()
+}
+
+fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
+    std::array::from_fn(|k| {
+        let pick = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
+        DVec3::new(
+            pick(0, min.x, max.x),
+            pick(1, min.y, max.y),
+            pick(2, min.z, max.z),
+        )
+    })
 }
 
 /// A small rectangle of the water at rest.
@@ -209,40 +287,30 @@ fn sphere(count: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// The piece of a light's window in which the shadow of an object's dry part lies; `None` where there is none.
+/// The piece of a point light's window in which the shadow of an object's dry part lies; `None` where there is none.
 fn shadow_on_water(object: &ObjectFacts, light: &LightFacts) -> Option<Rect> {
-    let (low_m, high_m) = (object.min.y.max(0.0), object.max.y);
-    let under_light = light
-        .source
-        .position_m()
-        .is_none_or(|position_m| low_m < position_m.y);
-    if high_m <= 0.0 || !under_light {
+    let Source::Point { position_m } = light.source else {
+        return None;
+    };
+    let low_m = object.min.y.max(0.0);
+    if object.max.y < 0.0 || low_m >= position_m.y {
         return None;
     }
-    let mut shadow: Option<Rect> = None;
-    for y in [low_m, high_m] {
-        for x in [object.min.x, object.max.x] {
-            for z in [object.min.z, object.max.z] {
-                let foot = match light.source {
-                    Source::Sun { to_light } => {
-                        let drift = DVec2::new(to_light.x, to_light.z) / to_light.y;
-                        DVec2::new(x, z) - drift * y
-                    }
-                    Source::Point { position_m } if y < position_m.y => {
-                        let from = DVec2::new(position_m.x, position_m.z);
-                        from + (DVec2::new(x, z) - from) * (position_m.y / (position_m.y - y))
-                    }
-                    // What reaches up beside the light may hide it from anywhere.
-                    Source::Point { .. } => return Some(light.window),
-                    Source::Submerged { .. } => return None,
-                };
-                let dot = Rect {
-                    min: foot,
-                    max: foot,
-                };
-                shadow = Some(shadow.map_or(dot, |s| s.including(dot)));
-            }
-        }
+    if object.max.y >= position_m.y {
+        // What reaches up beside the light may hide it from anywhere.
+        return Some(light.window);
     }
-    shadow?.within(light.window)
+    let shadow = corners(object.min.with_y(low_m), object.max)
+        .into_iter()
+        .map(|p| {
+            let from = DVec2::new(position_m.x, position_m.z);
+            let longer = position_m.y / (position_m.y - p.y);
+            let foot = from + (DVec2::new(p.x, p.z) - from) * longer;
+            Rect {
+                min: foot,
+                max: foot,
+            }
+        })
+        .reduce(Rect::including)?;
+    shadow.within(light.window)
 }

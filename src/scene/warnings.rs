@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::facts::{LightFacts, SceneFacts};
 use super::source::Source;
@@ -17,6 +17,11 @@ use crate::stats::Warning;
 const CELLS_PER_WAVE: f64 = 8.0;
 /// Water cells above the water within which a point light's rays spread too fast for the grid.
 const CLOSE_CELLS: f64 = 4.0;
+
+/// Share of the largest face of an object's box below which what is seen of it is rounding.
+const NOTHING: f64 = 1e-6;
+/// Least height of a point light over the water at rest that its solid angle is reckoned with, as a share of how close cells count.
+const LEAST_HEIGHT: f64 = 1e-9;
 
 /// Code of the warning that scattered light is lost; its flux is known after the frame.
 pub const SCATTERING_NOT_FOLLOWED: &str = "scattering_not_followed";
@@ -75,6 +80,11 @@ fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
         let id = &meshes[index].id;
         meshes[..index].iter().all(|mesh| mesh.id != *id)
     };
+    let shows_material = |id: &str| {
+        let mut same = facts.objects.iter().filter(|object| object.mesh == id);
+        facts.camera.is_some() && same.any(|object| object.albedo.is_none())
+    };
+    let shows_material = &shows_material;
     let of_object = |index: usize| {
         let told = meshes[index].warnings.iter();
         told.filter_map(move |w| {
@@ -84,7 +94,7 @@ fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
                 // Neither what has no area nor what is there twice stops any light.
                 Some(with_flux(found, [0.0; 3]))
             } else {
-                (w.code == mtl::CLAMPED && facts.camera.is_some()).then_some(found)
+                (w.code == mtl::CLAMPED && shows_material(&meshes[index].id)).then_some(found)
             }
         })
     };
@@ -102,22 +112,26 @@ fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
     }
     let of_object = |(index, object): (usize, &super::placement::ObjectFacts)| {
         let at = format!("/objects/{index}");
-        let found = if !object.wet {
-            warning(
+        if !object.wet {
+            let found = warning(
                 "dry_object_casts_no_shadow",
                 "the object is above the water; its shadow on the water is not simulated",
                 at,
-            )
-        } else if object.max.y > facts.surface.max_height_m() {
-            warning(
-                "object_cuts_surface",
-                "the object reaches through the water; the shadow of its dry part on the water is not simulated",
-                at,
-            )
-        } else {
+            );
+            return Some(with_flux(found, stopped.above_water_w(index)));
+        }
+        if object.max.y <= 0.0 {
             return None;
-        };
-        Some(with_flux(found, stopped.above_water_w(index)))
+        }
+        let found = warning(
+            "object_cuts_surface",
+            "the object reaches through the water at rest; the shadow of its dry part on the water is not simulated",
+            at,
+        );
+        let flux_w = stopped.above_water_w(index);
+        // What stays below the highest crests may never be seen out of the water.
+        let is_clear = object.max.y > facts.surface.max_height_m();
+        (is_clear || flux_w != [0.0; 3]).then(|| with_flux(found, flux_w))
     };
     facts
         .objects
@@ -139,20 +153,27 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
             };
             let texel_m = level_box.density_per_flux.powf(-0.5);
             let across = object.across(&meshes[index], level_box.axis);
-            if across.width_m >= texel_m {
+            // A sheet that is seen from its edge stops nothing.
+            if across.width_m >= texel_m || across.area_m2 <= NOTHING * across.largest_m2 {
                 continue;
             }
-            let on_it = across.area_m2 * light.source.most_at(object.wet_middle(), facts.ior);
+            let middle_m = object.wet_middle();
+            let unit = light.source.most_onto(middle_m, across.area_m2, facts.ior);
             for (sum, power) in flux_w.iter_mut().zip(light.power) {
-                *sum += power * on_it;
+                *sum += power * unit;
             }
             if thinnest.is_none_or(|(width_m, _)| across.width_m < width_m) {
                 thinnest = Some((across.width_m, texel_m));
             }
         }
         let (width_m, texel_m) = thinnest?;
+        let helps = if facts.detail_of(index) < 1.0 {
+            "a smaller quality.level_of_detail and more quality.level_map_texels help"
+        } else {
+            "more quality.level_map_texels help"
+        };
         let message = format!(
-            "across the light the object is {width_m:.1e} m thin, less than a texel of its level map of {texel_m:.1e} m: part of the light that it stops gets through; more quality.level_map_texels help"
+            "across the light the object is {width_m:.1e} m thin, less than a texel of its level map of {texel_m:.1e} m: part of the light that it stops, all of it at most, gets through; {helps}"
         );
         let at = format!("/objects/{index}");
         Some(with_flux(
@@ -236,10 +257,6 @@ fn within_objects(facts: &SceneFacts, light: &LightFacts, stopped: &Stopped<'_>)
     let Some(position_m) = light.source.position_m() else {
         return Vec::new();
     };
-    let is_around = |index: &usize| {
-        let object = &facts.objects[*index];
-        position_m.cmpge(object.min).all() && position_m.cmple(object.max).all()
-    };
     let of_object = |index: usize| {
         let found = warning(
             "light_within_object",
@@ -252,7 +269,7 @@ fn within_objects(facts: &SceneFacts, light: &LightFacts, stopped: &Stopped<'_>)
     };
     facts
         .wet_objects()
-        .filter(is_around)
+        .filter(|&index| stopped::is_around(&facts.objects[index], position_m))
         .map(of_object)
         .collect()
 }
@@ -271,10 +288,15 @@ fn close_to_water(facts: &SceneFacts, light: &LightFacts) -> Option<Warning> {
         min: foot_m,
         max: foot_m,
     };
+    let from_m = DVec3::new(
+        position_m.x,
+        position_m.y.max(LEAST_HEIGHT * close_m),
+        position_m.z,
+    );
     let unit = near
         .grown(close_m)
         .within(light.window)
-        .map_or(0.0, |rect| stopped::rect_sr(rect, position_m));
+        .map_or(0.0, |rect| stopped::rect_sr(rect, from_m));
     let found = warning(
         "light_close_to_water",
         format!(

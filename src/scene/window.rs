@@ -39,6 +39,11 @@ impl Rect {
         }
     }
 
+    /// Whether a place lies in it.
+    pub(super) fn holds(&self, at: DVec2) -> bool {
+        at.cmpge(self.min).all() && at.cmple(self.max).all()
+    }
+
     /// What lies in another one too; `None` where that is nothing.
     pub(super) fn within(self, other: Self) -> Option<Self> {
         let both = Self {

@@ -76,7 +76,7 @@ fn a_point_light_is_read_strictly_and_checked() {
 }
 
 fn facts(scene: Value) -> SceneFacts {
-    SceneFacts::of(&scene_files::scene(scene)).unwrap()
+    SceneFacts::with_warnings(&scene_files::scene(scene)).unwrap()
 }
 
 #[test]

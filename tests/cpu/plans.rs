@@ -38,7 +38,7 @@ fn planned(resolved: &ResolvedScene) -> Plan {
 }
 
 fn planned_with(resolved: &ResolvedScene, full: bool) -> Plan {
-    let facts = SceneFacts::of(resolved).unwrap();
+    let facts = SceneFacts::with_warnings(resolved).unwrap();
     plan::plan_scene(&facts, &FakeCache { full }).unwrap()
 }
 

@@ -17,7 +17,7 @@ fn warnings(cells: u32) -> Vec<(String, Option<String>)> {
         "quality": { "water_cells": cells },
         "output": { "kind": "irradiance_map", "receiver": "floor", "width": 64, "height": 64 }
     }));
-    let facts = SceneFacts::of(&resolved).unwrap();
+    let facts = SceneFacts::with_warnings(&resolved).unwrap();
     facts
         .warnings
         .into_iter()

@@ -29,8 +29,23 @@ fn lamp(position_m: [f64; 3]) -> Value {
     json!({ "kind": "point", "position_m": position_m, "intensity_w_sr": [1, 2, 0] })
 }
 
-/// Objects (mesh, placement) over a floor of 8 m × 8 m, 2 m down.
+/// A floor of 8 m × 8 m, 2 m down.
+fn scene(lights: &[Value], quality: &Value) -> Value {
+    json!({
+        "water": {},
+        "floor": { "depth_m": 2, "size_m": [8, 8] },
+        "lights": lights,
+        "quality": quality,
+        "output": { "kind": "irradiance_map", "receiver": "floor" }
+    })
+}
+
 fn warnings(lights: &[Value], objects: &[(&str, Value)], quality: &Value) -> Vec<Warning> {
+    warnings_of(scene(lights, quality), objects)
+}
+
+/// Those of a scene with objects (mesh, placement).
+fn warnings_of(mut scene: Value, objects: &[(&str, Value)]) -> Vec<Warning> {
     let meshes: Vec<_> = objects
         .iter()
         .map(|(text, _)| match *text {
@@ -47,19 +62,12 @@ fn warnings(lights: &[Value], objects: &[(&str, Value)], quality: &Value) -> Vec
             object
         })
         .collect::<Vec<_>>();
-    let scene = json!({
-        "water": {},
-        "floor": { "depth_m": 2, "size_m": [8, 8] },
-        "lights": lights,
-        "objects": placed,
-        "quality": quality,
-        "output": { "kind": "irradiance_map", "receiver": "floor" }
-    });
+    scene["objects"] = json!(placed);
     let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
     let resolved = Scene::from_value(scene)
         .and_then(|scene| resolve(scene, &Limits::default(), find))
         .unwrap();
-    SceneFacts::of(&resolved).unwrap().warnings
+    SceneFacts::with_warnings(&resolved).unwrap().warnings
 }
 
 /// The only warning with this code: its flux of a light of unit power, which all channels must agree on.
@@ -87,14 +95,30 @@ fn shadows_on_the_water_are_told_with_what_they_would_take() {
         let found = warnings(&[light], &[plate(y)], &json!({}));
         unit_flux(&found, "dry_object_casts_no_shadow")
     };
-    is_near(dry(sun(90.0), 1.0), 1.0, 1e-9);
+    is_near(dry(sun(90.0), 1.0), 1.0, 0.02);
     // A level shadow is as large as what casts it.
     let low = dry(sun(30.0), 1.0);
-    is_near(low, 0.5, 1e-9);
+    is_near(low, 0.5, 0.02);
+    // So it is under a sun so low and aslant that the shadow is a thin strip across a large square.
+    let mut low = sun(1.0);
+    low["azimuth_deg"] = json!(45);
+    let small = (
+        PLATE,
+        json!({ "translation_m": [0, 0.01, 0], "scale": 0.5 }),
+    );
+    let found = warnings(&[low], &[small], &json!({}));
+    let expected = 0.25 * 1_f64.to_radians().sin();
+    is_near(
+        unit_flux(&found, "dry_object_casts_no_shadow"),
+        expected,
+        0.05,
+    );
+    // A raft that lies right on the water stops what falls on it.
+    is_near(dry(sun(50.0), 0.0), 50_f64.to_radians().sin(), 0.02);
     // Half of the plate's shadow falls beside the floor's window of 4 m.
     let beside = (PLATE, json!({ "translation_m": [4.0, 1.0, 0.0] }));
     let found = warnings(&[sun(90.0)], &[beside], &json!({}));
-    is_near(unit_flux(&found, "dry_object_casts_no_shadow"), 0.5, 1e-3);
+    is_near(unit_flux(&found, "dry_object_casts_no_shadow"), 0.5, 0.02);
     // Under a point light what counts is how large the plate looks from there.
     let from_m = DVec3::new(0.0, 2.5, 0.0);
     let corner = DVec3::new(-0.2, 1.0, -0.7) - from_m;
@@ -116,7 +140,7 @@ fn what_reaches_out_of_the_water_counts_with_its_dry_part() {
     let mesh = scene_files::mesh("box.obj");
     let size = (mesh.max_m - mesh.min_m).as_dvec3();
     let top_m2 = 0.6 * size.x * 0.4 * size.z;
-    is_near(unit_flux(&found, "object_cuts_surface"), top_m2, 1e-9);
+    is_near(unit_flux(&found, "object_cuts_surface"), top_m2, 0.02);
     // Lit from the side its sides throw a longer shadow: flux through the top and the dry part of a side.
     let found = warnings(&[sun(45.0)], &[("box", upright)], &json!({}));
     let middle_m = (mesh.origin_m.y + f64::from(mesh.min_m.y) + 0.5 * size.y) * 1.5 + 0.25;
@@ -129,6 +153,24 @@ fn what_reaches_out_of_the_water_counts_with_its_dry_part() {
         .into_iter()
         .fold(f64::INFINITY, f64::min);
     assert!(off < 0.03, "{slanted}, sides {sides:?}");
+}
+
+#[test]
+fn what_stays_below_the_crests_is_told_where_it_takes_light() {
+    let flat = json!({});
+    let at = |y: f64| {
+        let plate = json!({ "translation_m": [0, y, 0] });
+        let found = warnings(&[sun(90.0)], &[(PLATE, plate)], &flat);
+        found
+            .into_iter()
+            .filter(|w| w.code.starts_with("object_cuts"))
+            .count()
+    };
+    assert_eq!(at(-0.1), 0);
+    let mut wavy = scene(&[sun(90.0)], &flat);
+    wavy["water"]["waves"] = json!([{ "kind": "sine", "amplitude_m": 0.5, "wavelength_m": 8 }]);
+    let found = warnings_of(wavy, &[(PLATE, json!({ "translation_m": [0, 0.4, 0] }))]);
+    is_near(unit_flux(&found, "object_cuts_surface"), 1.0, 0.02);
 }
 
 #[test]
@@ -188,11 +230,33 @@ fn what_is_thinner_than_a_texel_is_told() {
         let found = warnings(&[sun(90.0)], &[solid], &json!({}));
         assert!(found.iter().all(|w| w.code != thin), "{found:?}");
     }
-    // A plate on its edge is as thin as nothing, and stops nothing.
+    // A plate on its edge stops nothing.
     let upright = json!({ "translation_m": [0, -1, 0], "rotation": [0.707_106_781_186_547_5, 0, 0, 0.707_106_781_186_547_5] });
     let found = warnings(&[sun(90.0)], &[(PLATE, upright)], &json!({}));
-    let stopped = unit_flux(&found, thin);
-    assert!(stopped < 1e-9, "{stopped}");
+    assert!(found.iter().all(|w| w.code != thin), "{found:?}");
+    // A lamp amid the rod sends no more to it than half of its light.
+    let level = json!({ "translation_m": [0, -1, 0] });
+    let found = warnings(
+        &[lamp([0.0, -1.0, 0.0])],
+        &[(ROD, level.clone())],
+        &json!({}),
+    );
+    let all_sr = unit_flux(&found, thin);
+    assert!(all_sr > 0.0 && all_sr <= TAU * (1.0 + 1e-9), "{all_sr}");
+    // From far aside it looks small.
+    let near = unit_flux(
+        &warnings(
+            &[lamp([0.0, 1.0, 0.0])],
+            &[(ROD, level.clone())],
+            &json!({}),
+        ),
+        thin,
+    );
+    let aside = unit_flux(
+        &warnings(&[lamp([30.0, 1.0, 0.0])], &[(ROD, level)], &json!({})),
+        thin,
+    );
+    assert!(aside < near / 100.0, "{aside}, {near}");
 }
 
 #[test]
