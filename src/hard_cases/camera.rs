@@ -386,7 +386,7 @@ fn on_a_wave(bench: &mut Bench<'_>, above_m: f64) -> Result<f64, Failure> {
     let (x_m, z_m) = (0.3, 0.1);
     let (height_m, normal) = waves_at(x_m, z_m);
     let up = json!({ "up": [0, 0, -1], "vertical_fov_deg": 20 });
-    let mut errors = [0.0, 0.0];
+    let mut error = 0.0;
     for (target_m, more) in [([0.5, -1.0, 0.4], json!({})), ([0.4, 3.0, 0.2], up)] {
         let scene = with(
             under_the_sky(camera([x_m, height_m + above_m, z_m], target_m, more)),
@@ -413,14 +413,15 @@ fn on_a_wave(bench: &mut Bench<'_>, above_m: f64) -> Result<f64, Failure> {
                 clear.down_in_water(ray)
             }
         })?;
-        errors = [worst(errors[0], dry), worst(errors[1], wet)];
+        // Right on the wave a look may be on either side, the two of them on different ones: each has its own rounding of the wave.
+        let of_side = if above_m > 0.0 {
+            dry
+        } else if above_m < 0.0 {
+            wet
+        } else {
+            dry.min(wet)
+        };
+        error = worst(error, of_side);
     }
-    let [dry, wet] = errors;
-    Ok(if above_m > 0.0 {
-        dry
-    } else if above_m < 0.0 {
-        wet
-    } else {
-        dry.min(wet)
-    })
+    Ok(error)
 }

@@ -116,8 +116,8 @@ impl Renderer {
         for light in 0..lights {
             check_cancelled(cancel)?;
             let reruns = self.wide_sum_reruns;
-            // Of one light what comes after it is known already.
-            let next = comparison.as_mut().filter(|_| lights == 1);
+            // After the last light it is known what comes.
+            let next = comparison.as_mut().filter(|_| light + 1 == lights);
             let next = next.map(|comparison| (comparison, &comparing));
             let found = self.run_light(facts, light, &of_lights, next, buffers, &mut time_ms)?;
             if let Some((account, counts)) = found {
@@ -212,8 +212,7 @@ impl Renderer {
                 self.record_all(&mut encoder, &maps, facts, run, buffers, time_ms)?;
                 ahead.push(encoder.finish());
                 if let Some((comparison, passes)) = &mut next {
-                    let recorded = self.record_comparison(comparison, facts, passes, buffers)?;
-                    ahead.extend(recorded.map(wgpu::CommandEncoder::finish));
+                    ahead.extend(self.record_comparison(comparison, facts, passes, buffers)?);
                 }
             }
             self.gpu.wait()?;
@@ -244,8 +243,10 @@ impl Renderer {
             timed(&mut time_ms.upload, || {
                 let mut ahead = ahead.into_iter();
                 self.gpu.queue.submit(ahead.next());
-                if let (Some((comparison, _)), Some(commands)) = (&next, ahead.next()) {
-                    self.set_receivers(&comparison.coarse, index, buffers);
+                for (coarse_light, commands) in ahead.enumerate() {
+                    if let Some((comparison, _)) = &next {
+                        self.set_receivers(&comparison.coarse, coarse_light, buffers);
+                    }
                     self.gpu.queue.submit([commands]);
                 }
             });
@@ -266,46 +267,55 @@ impl Renderer {
         !self.timing.times_by_host() && steps.all(|step| !self.may_be_cut(&step, buffers))
     }
 
-    /// Records the only light done again coarsely, and its comparison with the maps, if that can be done ahead; its receivers have to be
-    /// set when it is submitted.
+    /// Records the lights done again coarsely, and their comparison with the maps, if that can be done ahead: the commands of each light,
+    /// whose receivers have to be set when they are submitted. The last ones also compare.
     fn record_comparison(
         &mut self,
         comparison: &mut Comparison,
         facts: &SceneFacts,
         [light, coarse_light, estimate]: &ComparisonPasses,
         buffers: &FrameBuffers,
-    ) -> Result<Option<wgpu::CommandEncoder>, RenderError> {
-        let (coarse, wide_sums) = (&comparison.coarse, comparison.wide_sums[0]);
-        let of_light = Run::Light {
-            index: 0,
-            wide_sums,
-        };
-        let of_coarse = Run::CoarseLight {
-            index: 0,
-            wide_sums,
-            fine: facts,
+    ) -> Result<Vec<wgpu::CommandBuffer>, RenderError> {
+        let coarse = &comparison.coarse;
+        let in_turn: Vec<(usize, bool)> =
+            comparison.wide_sums.iter().copied().enumerate().collect();
+        let in_one_go = |&(index, wide_sums): &(usize, bool)| {
+            let of_light = Run::Light { index, wide_sums };
+            let of_coarse = Run::CoarseLight {
+                index,
+                wide_sums,
+                fine: facts,
+            };
+            self.runs_in_one_go(light, coarse, of_light, buffers)
+                && self.runs_in_one_go(coarse_light, coarse, of_coarse, buffers)
         };
         let of_frame = Run::Frame { coarse };
-        let in_one_go = self.runs_in_one_go(light, coarse, of_light, buffers)
-            && self.runs_in_one_go(coarse_light, coarse, of_coarse, buffers)
-            && self.runs_in_one_go(estimate, facts, of_frame, buffers);
-        if !in_one_go {
-            return Ok(None);
+        if !in_turn.iter().all(in_one_go)
+            || !self.runs_in_one_go(estimate, facts, of_frame, buffers)
+        {
+            return Ok(Vec::new());
         }
-        let mut encoder = self.begin_light(coarse, wide_sums, buffers);
         let passes = (light.as_slice(), coarse_light.as_slice());
         let mut nothing = TimeStats::default();
-        let account = self.record_coarse_light(
-            &mut encoder,
-            (coarse, facts),
-            (0, wide_sums),
-            passes,
-            buffers,
-            &mut nothing,
-        )?;
-        let differences = self.record_estimate(&mut encoder, estimate, coarse, facts, buffers)?;
-        comparison.sent = Some((differences, vec![account]));
-        Ok(Some(encoder))
+        let (mut recorded, mut accounts) = (Vec::new(), Vec::new());
+        for &(index, wide_sums) in &in_turn {
+            let mut encoder = self.begin_light(coarse, wide_sums, buffers);
+            accounts.push(self.record_coarse_light(
+                &mut encoder,
+                (coarse, facts),
+                (index, wide_sums),
+                passes,
+                buffers,
+                &mut nothing,
+            )?);
+            if index + 1 == in_turn.len() {
+                let differences =
+                    self.record_estimate(&mut encoder, estimate, coarse, facts, buffers)?;
+                comparison.sent = Some((differences, std::mem::take(&mut accounts)));
+            }
+            recorded.push(encoder.finish());
+        }
+        Ok(recorded)
     }
 
     /// Sends the lights done again coarsely, and the comparison with the maps, to the GPU. Nobody waits: what the frame reads next is

@@ -194,8 +194,14 @@ fn thin_footprints_lose_nothing() {
             println!(
                 "{cells} cells, {side}² texels, {strength} of the focus: closure {closure:.1e}"
             );
+            // Of quotients that a GPU may have 2.5 ulp off, each texel's share is more so: 2.9e-6 on an H200.
+            let most = if map.stats.adapter.software {
+                1e-6
+            } else {
+                5e-6
+            };
             assert!(
-                closure <= 1e-6,
+                closure <= most,
                 "{cells} cells, {side}², {strength}: {closure:e}"
             );
             let landed = map.stats.energy[0].landed_w[0];
