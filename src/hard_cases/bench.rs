@@ -191,7 +191,7 @@ impl<'a> Bench<'a> {
             Ok(figure) if figure <= case.bound => (Some(figure), None),
             Ok(figure) => (
                 Some(figure),
-                Some(format!("{figure:e} is above {:e}", case.bound)),
+                Some(format!("{figure:.1e} is above {:e}", case.bound)),
             ),
             Err(failure) => (None, Some(failure.to_string())),
         };
