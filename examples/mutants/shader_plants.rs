@@ -275,6 +275,8 @@ pub(crate) const ALL: &[ShaderPlant] = &[
             "a_micrometre_over_the_surface",
             "on_the_surface",
             "on_a_wave",
+            "a_view_of_a_floor_at_depth_0",
+            "a_view_of_a_floor_at_a_tenth_of_a_millimetre",
             "a_field_of_view_of_a_tenth_of_a_degree",
             "a_field_of_view_of_179_degrees",
             "one_column_of_8192_pixels",
@@ -286,7 +288,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         file: "passes/camera_hits.wgsl",
         from: "if over_water(ray.origin) >= 0.0 {",
         to: "if over_water(ray.origin) >= -2e-5 {",
-        red: Red::Only(&["a_micrometre_under_the_surface"]),
+        red: Red::Only(&["a_micrometre_under_the_surface", "on_a_wave"]),
         what: "a camera just under the water is taken to be over it",
     },
 ];
