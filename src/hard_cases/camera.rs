@@ -381,7 +381,8 @@ fn over_a_floor_at(depth_m: f64) -> Value {
 }
 
 /// Worst pixel of two views, down and up, of a camera at a wave or so far above it, against what is to be seen from its side of the wave.
-/// A sky lights the floor evenly whatever the waves; rays cross the surface where the camera is. On the wave itself rounding puts it on either side, which has to be the same for all pixels.
+/// A sky lights the floor evenly whatever the waves; rays cross the surface where the camera is. On the wave itself rounding puts it on
+/// either side, which has to be the same for all pixels of a view.
 fn on_a_wave(bench: &mut Bench<'_>, above_m: f64) -> Result<f64, Failure> {
     let (x_m, z_m) = (0.3, 0.1);
     let (height_m, normal) = waves_at(x_m, z_m);

@@ -7,8 +7,8 @@ use tokio_util::sync::CancellationToken;
 
 use super::buffers::{FrameBuffers, clear_for_light};
 use super::commands::Recording;
+use super::comparison::{Comparison, ComparisonPasses};
 use super::{RenderError, Renderer, RunResult, collect, geometry, ms_since, slot_name};
-use crate::gpu::readback::Staged;
 use crate::gpu::{GpuError, readback};
 use crate::passes::desc::{PassDesc, Repeat, Run};
 use crate::passes::slot::{self, ENERGY_TERMS, Lifetime, Slot, band_rows};
@@ -20,7 +20,7 @@ use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::{AccuracyStats, TimeStats};
 
 /// Bytes of one light's energy account.
-const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
+pub(super) const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
 
 impl Renderer {
     pub(super) fn execute(
@@ -256,7 +256,7 @@ impl Renderer {
 
     /// Whether passes can be recorded before their turn: none of them is cut into pieces, or timed by the host, for which it would have
     /// to run when it is recorded.
-    fn runs_in_one_go(
+    pub(super) fn runs_in_one_go(
         &self,
         passes: &[&'static PassDesc],
         facts: &SceneFacts,
@@ -267,215 +267,8 @@ impl Renderer {
         !self.timing.times_by_host() && steps.all(|step| !self.may_be_cut(&step, buffers))
     }
 
-    /// Records the lights done again coarsely, and their comparison with the maps, if that can be done ahead: the commands of each light,
-    /// whose receivers have to be set when they are submitted. The last ones also compare.
-    fn record_comparison(
-        &mut self,
-        comparison: &mut Comparison,
-        facts: &SceneFacts,
-        [light, coarse_light, estimate]: &ComparisonPasses,
-        buffers: &FrameBuffers,
-    ) -> Result<Vec<wgpu::CommandBuffer>, RenderError> {
-        let coarse = &comparison.coarse;
-        let in_turn: Vec<(usize, bool)> =
-            comparison.wide_sums.iter().copied().enumerate().collect();
-        let in_one_go = |&(index, wide_sums): &(usize, bool)| {
-            let of_light = Run::Light { index, wide_sums };
-            let of_coarse = Run::CoarseLight {
-                index,
-                wide_sums,
-                fine: facts,
-            };
-            self.runs_in_one_go(light, coarse, of_light, buffers)
-                && self.runs_in_one_go(coarse_light, coarse, of_coarse, buffers)
-        };
-        let of_frame = Run::Frame { coarse };
-        if !in_turn.iter().all(in_one_go)
-            || !self.runs_in_one_go(estimate, facts, of_frame, buffers)
-        {
-            return Ok(Vec::new());
-        }
-        let passes = (light.as_slice(), coarse_light.as_slice());
-        let mut nothing = TimeStats::default();
-        let (mut recorded, mut accounts) = (Vec::new(), Vec::new());
-        for &(index, wide_sums) in &in_turn {
-            let mut encoder = self.begin_light(coarse, wide_sums, buffers);
-            accounts.push(self.record_coarse_light(
-                &mut encoder,
-                (coarse, facts),
-                (index, wide_sums),
-                passes,
-                buffers,
-                &mut nothing,
-            )?);
-            if index + 1 == in_turn.len() {
-                let differences =
-                    self.record_estimate(&mut encoder, estimate, coarse, facts, buffers)?;
-                comparison.sent = Some((differences, std::mem::take(&mut accounts)));
-            }
-            recorded.push(encoder.finish());
-        }
-        Ok(recorded)
-    }
-
-    /// Sends the lights done again coarsely, and the comparison with the maps, to the GPU. Nobody waits: what the frame reads next is
-    /// what is waited for.
-    fn send_comparison(
-        &mut self,
-        comparison: &mut Comparison,
-        facts: &SceneFacts,
-        [light, coarse_light, estimate]: &ComparisonPasses,
-        buffers: &FrameBuffers,
-        cancel: &CancellationToken,
-        time_ms: &mut TimeStats,
-    ) -> Result<(), RenderError> {
-        let coarse = &comparison.coarse;
-        let mut started = Recording::start(time_ms);
-        let (mut encoder, accounts) = self.coarse_lights(
-            (coarse, facts),
-            &comparison.wide_sums,
-            (light, coarse_light),
-            buffers,
-            cancel,
-            time_ms,
-        )?;
-        let by_host = self.timing.times_by_host();
-        if by_host {
-            let lights = std::mem::replace(&mut encoder, self.encoder("estimate"));
-            let began = started.at;
-            self.submit(lights, started, time_ms)?;
-            let name = passes::coarse_irradiance::PASS.name;
-            self.timing.note(name, ms_since(began));
-            started = Recording::start(time_ms);
-        }
-        let differences = self.record_estimate(&mut encoder, estimate, coarse, facts, buffers)?;
-        if by_host {
-            let ms = self.submit(encoder, started, time_ms)?;
-            // Where it ran in pieces, those are noted already.
-            self.timing.note(passes::estimate::PASS.name, ms);
-        } else {
-            self.send(encoder, started, time_ms);
-        }
-        comparison.sent = Some((differences, accounts));
-        Ok(())
-    }
-
-    /// Records the comparison of the maps with those of the lights done coarsely, and the copy of what it gives.
-    fn record_estimate(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        estimate: &[&'static PassDesc],
-        coarse: &SceneFacts,
-        facts: &SceneFacts,
-        buffers: &FrameBuffers,
-    ) -> Result<Staged, RenderError> {
-        for pass in estimate {
-            self.record(encoder, pass, facts, Run::Frame { coarse }, buffers, None)?;
-        }
-        let differences = buffers.get(slot_name(Slot::Differences));
-        let bytes = Slot::Differences.bytes(facts);
-        Ok(readback::stage(&self.gpu, encoder, differences, bytes))
-    }
-
-    /// The sums of the differences, workgroup by workgroup. Where an account says that narrow sums of the coarse light wrapped, all of
-    /// it goes once more, with wide ones there.
-    fn read_comparison(
-        &mut self,
-        mut comparison: Comparison,
-        facts: &SceneFacts,
-        passes: &ComparisonPasses,
-        buffers: &FrameBuffers,
-        cancel: &CancellationToken,
-        time_ms: &mut TimeStats,
-    ) -> Result<Vec<[f32; 4]>, RenderError> {
-        loop {
-            let Some((differences, accounts)) = comparison.sent.take() else {
-                let again = &mut comparison;
-                self.send_comparison(again, facts, passes, buffers, cancel, time_ms)?;
-                continue;
-            };
-            timed(&mut time_ms.gpu, || self.gpu.wait())?;
-            let started = Instant::now();
-            let differences = differences.read(&self.gpu)?;
-            let mut have_wrapped = false;
-            for (index, account) in accounts.into_iter().enumerate() {
-                let account = account.read(&self.gpu)?;
-                let wide_sums = &mut comparison.wide_sums[index];
-                if !*wide_sums && has_wrapped(&comparison.coarse, index, &account) {
-                    self.wide_sum_reruns += 1;
-                    *wide_sums = true;
-                    have_wrapped = true;
-                }
-            }
-            time_ms.readback += ms_since(started);
-            if !have_wrapped {
-                return Ok(differences);
-            }
-        }
-    }
-
-    /// Records all coarse lights, each of them submitted when the next begins: an encoder that ends with the last, and their accounts,
-    /// which are there once that has run.
-    fn coarse_lights(
-        &mut self,
-        (coarse, fine): (&SceneFacts, &SceneFacts),
-        wide_sums: &[bool],
-        (sums, maps): (&[&'static PassDesc], &[&'static PassDesc]),
-        buffers: &FrameBuffers,
-        cancel: &CancellationToken,
-        time_ms: &mut TimeStats,
-    ) -> Result<(wgpu::CommandEncoder, Vec<Staged>), RenderError> {
-        let mut recorded: Option<wgpu::CommandEncoder> = None;
-        let mut accounts = Vec::new();
-        for (index, &wide_sums) in wide_sums.iter().enumerate() {
-            check_cancelled(cancel)?;
-            // The next light's receivers take the place of this one's, so what reads those has to be on its way.
-            if let Some(light) = recorded.take() {
-                self.gpu.queue.submit([light.finish()]);
-            }
-            self.set_receivers(coarse, index, buffers);
-            let mut encoder = self.begin_light(coarse, wide_sums, buffers);
-            accounts.push(self.record_coarse_light(
-                &mut encoder,
-                (coarse, fine),
-                (index, wide_sums),
-                (sums, maps),
-                buffers,
-                time_ms,
-            )?);
-            recorded = Some(encoder);
-        }
-        let encoder = recorded.unwrap_or_else(|| self.encoder("estimate"));
-        Ok((encoder, accounts))
-    }
-
-    /// Records a light done coarsely, all of it timed as one, and the copy of its account.
-    fn record_coarse_light(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        (coarse, fine): (&SceneFacts, &SceneFacts),
-        (index, wide_sums): (usize, bool),
-        (sums, maps): (&[&'static PassDesc], &[&'static PassDesc]),
-        buffers: &FrameBuffers,
-        time_ms: &mut TimeStats,
-    ) -> Result<Staged, RenderError> {
-        self.timing
-            .group(Some(passes::coarse_irradiance::PASS.name));
-        let run = Run::Light { index, wide_sums };
-        self.record_all(encoder, sums, coarse, run, buffers, time_ms)?;
-        let run = Run::CoarseLight {
-            index,
-            wide_sums,
-            fine,
-        };
-        self.record_all(encoder, maps, coarse, run, buffers, time_ms)?;
-        self.timing.group(None);
-        let energy = buffers.get(slot_name(Slot::Energy));
-        Ok(readback::stage(&self.gpu, encoder, energy, ACCOUNT_BYTES))
-    }
-
     /// Sets the receivers of a light, for what is submitted from now on.
-    fn set_receivers(&self, facts: &SceneFacts, index: usize, buffers: &FrameBuffers) {
+    pub(super) fn set_receivers(&self, facts: &SceneFacts, index: usize, buffers: &FrameBuffers) {
         if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
             let receivers = self.receivers(facts, index);
             let bytes = bytemuck::cast_slice(&receivers);
@@ -484,7 +277,7 @@ impl Renderer {
     }
 
     /// Begins a light's commands, with empty queues and its flux sums at zero.
-    fn begin_light(
+    pub(super) fn begin_light(
         &self,
         facts: &SceneFacts,
         wide_sums: bool,
@@ -496,7 +289,7 @@ impl Renderer {
     }
 
     /// Records passes one after the other; where the host times them, submits each.
-    fn record_all(
+    pub(super) fn record_all(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         passes: &[&'static PassDesc],
@@ -674,34 +467,8 @@ impl Renderer {
 /// What a light's sums came to: its raw account, and the counts of its planes.
 type LightSums = (Vec<u64>, Option<Vec<[u32; 4]>>);
 
-/// Passes of a light that is done again coarsely: those that make its sums, those that take them, and those that compare.
-type ComparisonPasses = [Vec<&'static PassDesc>; 3];
-
-/// The light done again coarsely, to be compared with the frame's maps.
-struct Comparison {
-    coarse: SceneFacts,
-    /// Of each light, whether its sums are wide.
-    wide_sums: Vec<bool>,
-    /// The differences and the lights' accounts, on their way.
-    sent: Option<(Staged, Vec<Staged>)>,
-}
-
-impl Comparison {
-    fn new(facts: &SceneFacts) -> Self {
-        let coarse = facts.coarse();
-        let lights = 0..coarse.lights.len();
-        Self {
-            wide_sums: lights
-                .map(|index| light::needs_wide_sums(&coarse, index))
-                .collect(),
-            coarse,
-            sent: None,
-        }
-    }
-}
-
 /// What `work` gives, its time added.
-fn timed<T>(ms: &mut f64, work: impl FnOnce() -> T) -> T {
+pub(super) fn timed<T>(ms: &mut f64, work: impl FnOnce() -> T) -> T {
     let started = Instant::now();
     let result = work();
     *ms += ms_since(started);
@@ -709,7 +476,7 @@ fn timed<T>(ms: &mut f64, work: impl FnOnce() -> T) -> T {
 }
 
 /// Whether the account of a light says that its narrow sums wrapped.
-fn has_wrapped(facts: &SceneFacts, index: usize, account: &[u64]) -> bool {
+pub(super) fn has_wrapped(facts: &SceneFacts, index: usize, account: &[u64]) -> bool {
     light::has_wrapped(facts, index, collect::missing_flux(facts, index, account))
 }
 
@@ -758,7 +525,7 @@ fn samples(facts: &SceneFacts) -> Vec<Sample> {
     all
 }
 
-fn check_cancelled(cancel: &CancellationToken) -> Result<(), RenderError> {
+pub(super) fn check_cancelled(cancel: &CancellationToken) -> Result<(), RenderError> {
     if cancel.is_cancelled() {
         Err(RenderError::Cancelled)
     } else {

@@ -3,6 +3,7 @@
 mod buffers;
 mod collect;
 mod commands;
+mod comparison;
 mod executor;
 mod geometry;
 mod pieces;

@@ -106,13 +106,13 @@ impl ResolvedScene {
     }
 }
 
-fn corners(mesh: &Mesh) -> [DVec3; 8] {
-    let (low, high) = (mesh.min_m.as_dvec3(), mesh.max_m.as_dvec3());
+/// The corners of a box.
+pub(super) fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     std::array::from_fn(|i| {
         DVec3::new(
-            if i & 1 == 0 { low.x } else { high.x },
-            if i & 2 == 0 { low.y } else { high.y },
-            if i & 4 == 0 { low.z } else { high.z },
+            if i & 1 == 0 { min.x } else { max.x },
+            if i & 2 == 0 { min.y } else { max.y },
+            if i & 4 == 0 { min.z } else { max.z },
         )
     })
 }
@@ -120,7 +120,7 @@ fn corners(mesh: &Mesh) -> [DVec3; 8] {
 fn bounds(local_from_mesh: &DAffine3, mesh: &Mesh) -> (DVec3, DVec3) {
     let mut min = DVec3::INFINITY;
     let mut max = DVec3::NEG_INFINITY;
-    for corner in corners(mesh) {
+    for corner in corners(mesh.min_m.as_dvec3(), mesh.max_m.as_dvec3()) {
         let p = local_from_mesh.transform_point3(corner);
         min = min.min(p);
         max = max.max(p);
@@ -202,7 +202,7 @@ impl LevelBox {
         let along = (DVec3::from_array(direction.map(f64::from)) / steps).normalize();
         let (across_u, across_v) = along.any_orthonormal_pair();
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for corner in corners(mesh) {
+        for corner in corners(mesh.min_m.as_dvec3(), mesh.max_m.as_dvec3()) {
             let p = DVec3::new(
                 across_u.dot(corner),
                 across_v.dot(corner),

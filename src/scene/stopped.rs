@@ -7,9 +7,9 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::facts::{LightFacts, SceneFacts};
-use super::placement::ObjectFacts;
+use super::placement::{ObjectFacts, corners};
 use super::source::Source;
-use super::window::Rect;
+use super::window::{EVERYWHERE_M, Rect};
 use crate::mesh::{Mesh, hierarchy};
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::octahedral::octahedral_place;
@@ -24,8 +24,6 @@ const LEAST_SIDE: u32 = 4;
 const RAYS: f64 = 32_768.0;
 /// Directions around a light within an object, at most and at least.
 const DIRECTIONS: [f64; 2] = [64.0, 1024.0];
-/// Farther than anything in a scene, m.
-const EVERYWHERE_M: f64 = 1e9;
 /// How far behind its origin a ray still meets something, as a share of the object's size: what lies in the plane that rays start from
 /// counts.
 const BEHIND: f64 = 1e-6;
@@ -47,8 +45,8 @@ impl<'a> Stopped<'a> {
         let positions = facts.lights.iter().filter_map(|l| l.source.position_m());
         let within: usize = positions
             .map(|position_m| {
-                let mut around = facts.objects.iter().map(|o| is_around(o, position_m));
-                around.by_ref().filter(|&is| is).count()
+                let around = facts.objects.iter().filter(|o| is_around(o, position_m));
+                around.count()
             })
             .sum();
         let [fewest, most] = DIRECTIONS;
@@ -207,17 +205,6 @@ impl<'a> Stopped<'a> {
 /// Whether a place is within the bounds of an object.
 pub(super) fn is_around(object: &ObjectFacts, position_m: DVec3) -> bool {
     position_m.cmpge(object.min).all() && position_m.cmple(object.max).all()
-}
-
-fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
-    std::array::from_fn(|k| {
-        let pick = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
-        DVec3::new(
-            pick(0, min.x, max.x),
-            pick(1, min.y, max.y),
-            pick(2, min.z, max.z),
-        )
-    })
 }
 
 /// A small rectangle of the water at rest.

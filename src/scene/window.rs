@@ -9,7 +9,7 @@ use crate::physics::refraction;
 /// Directions in which the steepest tilts are looked up.
 const RIM_DIRECTIONS: u32 = 64;
 /// Farther than anything in a scene, m.
-const EVERYWHERE_M: f64 = 1e9;
+pub(super) const EVERYWHERE_M: f64 = 1e9;
 /// Widening for tilts between the ones looked up.
 const MARGIN: f64 = 0.01;
 /// How far f32 may be off where a ray ends, as a share of its coordinates and depth: eight spacings of numbers near 1.
