@@ -18,6 +18,9 @@ use crate::scene::warnings::{SCATTERING_NOT_FOLLOWED, WAVES_UNDERSAMPLED};
 use crate::scene::{LayerName, Receiver};
 use crate::stats::{EnergyAccount, PlaneStats, Warning};
 
+/// Bytes of one light's energy account.
+pub(super) const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
+
 /// Closure up to which planes are said to conserve energy: that of hits.
 const PLANES_CLOSE: f64 = 1e-5;
 
@@ -227,6 +230,11 @@ pub(super) fn missing_flux(facts: &SceneFacts, index: usize, terms: &[u64]) -> f
         })
         .fold(f64::MIN, f64::max);
     missing / light::energy_scale(facts, index)
+}
+
+/// Whether the account of a light says that its narrow sums wrapped.
+pub(super) fn has_wrapped(facts: &SceneFacts, index: usize, account: &[u64]) -> bool {
+    light::has_wrapped(facts, index, missing_flux(facts, index, account))
 }
 
 /// All terms of a channel but what was emitted, W.

@@ -6,9 +6,9 @@ use std::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use super::buffers::FrameBuffers;
+use super::collect::{ACCOUNT_BYTES, has_wrapped};
 use super::commands::Recording;
-use super::executor::{ACCOUNT_BYTES, check_cancelled, has_wrapped, timed};
-use super::{RenderError, Renderer, ms_since, slot_name};
+use super::{RenderError, Renderer, check_cancelled, ms_since, slot_name, timed};
 use crate::gpu::readback::{self, Staged};
 use crate::passes::desc::{PassDesc, Run};
 use crate::passes::slot::Slot;

@@ -6,21 +6,22 @@ use std::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use super::buffers::{FrameBuffers, clear_for_light};
+use super::collect::{ACCOUNT_BYTES, has_wrapped};
 use super::commands::Recording;
 use super::comparison::{Comparison, ComparisonPasses};
-use super::{RenderError, Renderer, RunResult, collect, geometry, ms_since, slot_name};
+use super::{
+    RenderError, Renderer, RunResult, check_cancelled, collect, geometry, ms_since, slot_name,
+    timed,
+};
 use crate::gpu::{GpuError, readback};
 use crate::passes::desc::{PassDesc, Repeat, Run};
-use crate::passes::slot::{self, ENERGY_TERMS, Lifetime, Slot, band_rows};
+use crate::passes::slot::{self, Lifetime, Slot, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
 use crate::scene::facts::{SceneFacts, Wanted};
 use crate::scene::placement::{LevelBox, LevelMapKey};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::{AccuracyStats, TimeStats};
-
-/// Bytes of one light's energy account.
-pub(super) const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
 
 impl Renderer {
     pub(super) fn execute(
@@ -467,19 +468,6 @@ impl Renderer {
 /// What a light's sums came to: its raw account, and the counts of its planes.
 type LightSums = (Vec<u64>, Option<Vec<[u32; 4]>>);
 
-/// What `work` gives, its time added.
-pub(super) fn timed<T>(ms: &mut f64, work: impl FnOnce() -> T) -> T {
-    let started = Instant::now();
-    let result = work();
-    *ms += ms_since(started);
-    result
-}
-
-/// Whether the account of a light says that its narrow sums wrapped.
-pub(super) fn has_wrapped(facts: &SceneFacts, index: usize, account: &[u64]) -> bool {
-    light::has_wrapped(facts, index, collect::missing_flux(facts, index, account))
-}
-
 /// One round of rays through the pixels of a band.
 struct Sample {
     offset: [f64; 2],
@@ -523,12 +511,4 @@ fn samples(facts: &SceneFacts) -> Vec<Sample> {
         );
     }
     all
-}
-
-pub(super) fn check_cancelled(cancel: &CancellationToken) -> Result<(), RenderError> {
-    if cancel.is_cancelled() {
-        Err(RenderError::Cancelled)
-    } else {
-        Ok(())
-    }
 }

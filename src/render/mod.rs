@@ -494,6 +494,22 @@ fn bindable_bytes(gpu: &GpuContext) -> u64 {
     bytes - bytes % 16
 }
 
+fn check_cancelled(cancel: &CancellationToken) -> Result<(), RenderError> {
+    if cancel.is_cancelled() {
+        Err(RenderError::Cancelled)
+    } else {
+        Ok(())
+    }
+}
+
+/// What `work` gives, its time added.
+fn timed<T>(ms: &mut f64, work: impl FnOnce() -> T) -> T {
+    let started = Instant::now();
+    let result = work();
+    *ms += ms_since(started);
+    result
+}
+
 fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
