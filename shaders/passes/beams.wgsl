@@ -4,6 +4,7 @@
 #import "lib/octahedral.wgsl"
 #import "lib/attenuation.wgsl"
 #import "shared/light.wgsl"
+#import "shared/grid.wgsl"
 #import "shared/entry.wgsl"
 
 @group(0) @binding(8) var<storage, read> surface: array<vec4f>;
@@ -11,10 +12,11 @@
 @group(0) @binding(9) var<storage, read_write> beams: array<vec4f>;
 
 @compute @workgroup_size(64)
-fn beams_main(@builtin(global_invocation_id) id: vec3u) {
+fn beams_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let side = light.cells + 1u;
-    if id.x >= side || id.y >= side { return; }
+    let id = vertex_of(group, groups, invocation, side);
+    if id.y >= side { return; }
     let vertex = id.y * side + id.x;
-    let entry = entry_at(vec2f(id.xy), surface[vertex].xyz);
+    let entry = entry_at(vec2f(id), surface[vertex].xyz);
     beams[vertex] = vec4f(entry.direction, entry.transmittance);
 }

@@ -2,6 +2,7 @@
 #import "lib/attenuation.wgsl"
 #import "lib/slicing.wgsl"
 #import "shared/light.wgsl"
+#import "shared/grid.wgsl"
 #import "shared/receivers.wgsl"
 #import "shared/floor_distance.wgsl"
 #import "shared/level_maps.wgsl"
@@ -16,11 +17,12 @@
 @group(0) @binding(10) var<storage, read_write> hits: array<vec4f>;
 
 @compute @workgroup_size(64)
-fn hits_main(@builtin(global_invocation_id) id: vec3u) {
+fn hits_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let side = light.cells + 1u;
-    if id.x >= side || id.y >= side { return; }
+    let id = vertex_of(group, groups, invocation, side);
+    if id.y >= side { return; }
     let vertex = id.y * side + id.x;
-    let origin = origin_at(vec2f(id.xy), surface[vertex].x);
+    let origin = origin_at(vec2f(id), surface[vertex].x);
     let hit = trace_light(origin, beams[vertex].xyz, light.object_count, light.has_floor == 1u);
     hits[vertex] = vec4f(hit.uv, hit.t, f32(hit.receiver));
 }

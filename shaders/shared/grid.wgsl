@@ -1,6 +1,12 @@
 // The triangles of the water grid: two per cell. The diagonal alternates like a chessboard, so that turning the scene by a quarter
 // turns the triangles with it (for an even number of cells).
 
+// The vertex of an invocation of 64 to a workgroup: row by row, `side` to a row. Beyond the last row there are none.
+fn vertex_of(group: vec3u, groups: vec3u, invocation: u32, side: u32) -> vec2u {
+    let vertex = (group.y * groups.x + group.x) * 64u + invocation;
+    return vec2u(vertex % side, vertex / side);
+}
+
 // The corners of a cell's half, two bits each: x + 2 z. Even cells: (00, 10, 11), (00, 11, 01); odd: (00, 10, 01), (10, 11, 01).
 fn beam_corners(cell: vec2u, half: u32) -> u32 {
     let odd = ((cell.x + cell.y) & 1u) == 1u;

@@ -5,6 +5,9 @@ use super::light::light_uniform;
 use super::slot::Slot;
 use super::surface::wanted_for_light;
 
+/// Water cells along a side of a workgroup's square, as in the shader.
+pub(super) const CELLS_ALONG_GROUP: u32 = 8;
+
 /// See the module.
 pub const PASS: PassDesc = PassDesc {
     name: "deposit",
@@ -17,7 +20,7 @@ pub const PASS: PassDesc = PassDesc {
         let Run::Light { index, wide_sums } = run else {
             return Vec::new();
         };
-        let groups = facts.quality.water_cells.div_ceil(8);
+        let groups = facts.quality.water_cells.div_ceil(CELLS_ALONG_GROUP);
         let uniforms = vec![("light", light_uniform(facts, index, wide_sums))];
         vec![
             Step {

@@ -1,5 +1,6 @@
 //! Estimate — compares the maps with those of the light done coarsely: the frame's own estimate of its error.
 
+use super::deposit::CELLS_ALONG_GROUP;
 use super::desc::{PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::{Comparison, Estimate};
 use super::maps::MapLayout;
@@ -152,8 +153,19 @@ pub fn groups_of(compared: &[Compared]) -> u32 {
         .map_or(0, |last| last.comparison.first_group + last.groups())
 }
 
+/// Two fifths of so many water cells along a side; fewer where that makes whole workgroups, a third at least.
+fn coarse_cells(water_cells: u32) -> u32 {
+    let two_fifths = (2 * water_cells / 5).max(1);
+    let in_whole_groups = two_fifths - two_fifths % CELLS_ALONG_GROUP;
+    if 3 * in_whole_groups >= water_cells {
+        in_whole_groups
+    } else {
+        two_fifths
+    }
+}
+
 impl SceneFacts {
-    /// The same scene with two fifths of the water cells along each side and, where that divides evenly, half the floor's texels; a
+    /// The same scene with two fifths of the water cells along each side (see [`coarse_cells`]) and, where that divides evenly, half the floor's texels; a
     /// quarter of them where those are still as many as the frame has water cells, because then only a few cells' light lies in a texel.
     /// So it is a sixth of the cells' work, but of the texels' a sixteenth or a quarter, and all of it of meshes' maps and where the
     /// floor's do not divide.
@@ -187,7 +199,7 @@ impl SceneFacts {
             }
         };
         let mut coarse = self.clone();
-        coarse.quality.water_cells = (2 * self.quality.water_cells / 5).max(1);
+        coarse.quality.water_cells = coarse_cells(self.quality.water_cells);
         coarse.quality.split_levels = self.quality.split_levels.saturating_sub(1);
         coarse.floor_map = self.floor_map.map(lowered);
         coarse

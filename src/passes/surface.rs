@@ -1,8 +1,8 @@
 //! Surface — height and slope of the water at the vertices of a light's window. The pass to copy.
 
-use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
+use super::desc::{PassDesc, Repeat, Run, Step, Work};
 use super::light::light_uniform;
-use super::slot::Slot;
+use super::slot::{self, Slot};
 use crate::scene::facts::SceneFacts;
 use crate::scene::source::Source;
 
@@ -86,10 +86,10 @@ pub(super) fn grid_step(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -
     let Run::Light { index, wide_sums } = run else {
         return Vec::new();
     };
-    let side = facts.quality.water_cells + 1;
+    let vertices = (facts.quality.water_cells + 1).pow(2);
     vec![Step {
         entry,
-        work: Work::Compute(Groups::Direct([side.div_ceil(64), side, 1])),
+        work: Work::Compute(slot::in_columns(vertices.div_ceil(64))),
         uniforms: vec![("light", light_uniform(facts, index, wide_sums))],
     }]
 }

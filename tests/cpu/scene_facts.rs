@@ -58,12 +58,17 @@ fn the_light_done_coarsely_has_coarser_maps_that_divide_the_fine_ones() {
         (cells, low)
     };
     // A quarter as long as that has a texel for each cell, else half.
-    assert_eq!(of_map(64, [256, 256]), (25, [64, 64]));
-    assert_eq!(of_map(65, [256, 256]), (26, [128, 128]));
-    assert_eq!(of_map(64, [256, 252]), (25, [128, 126]));
+    assert_eq!(of_map(64, [256, 256]), (24, [64, 64]));
+    assert_eq!(of_map(65, [256, 256]), (24, [128, 128]));
+    assert_eq!(of_map(64, [256, 252]), (24, [128, 126]));
     assert_eq!(of_map(16, [2048, 1024]), (6, [512, 256]));
     // What does not divide stays.
-    assert_eq!(of_map(64, [255, 258]), (25, [255, 129]));
+    assert_eq!(of_map(64, [255, 258]), (24, [255, 129]));
+    // Whole workgroups, where a third of the cells remain.
+    let cells = |cells: u32| of_map(cells, [256, 256]).0;
+    assert_eq!([256, 512, 1000, 1024].map(cells), [96, 200, 400, 408]);
+    assert_eq!([24, 25, 48, 49].map(cells), [8, 10, 16, 19]);
+    assert_eq!([2, 3, 5].map(cells), [1, 1, 2]);
     // A camera looks between the texels.
     let view = json!({ "kind": "view", "width": 64, "height": 36 });
     let (cells, low, fine) = coarse(16, view);

@@ -228,13 +228,13 @@ fn dispatches_cover_their_work() {
         index: 0,
         wide_sums: false,
     };
-    let vertices = [132, 132];
     for pass in [
         &passes::surface::PASS,
         &passes::beams::PASS,
         &passes::hits::PASS,
     ] {
-        check_cover(pass, &facts, light, [64, 1], vertices);
+        // Vertices row by row, without a gap.
+        check_cover(pass, &facts, light, [64, 1], [132 * 132, 1]);
     }
     check_cover(&passes::deposit::PASS, &facts, light, [8, 8], [131, 131]);
     let maps = MapLayout::of(&facts);
