@@ -168,7 +168,7 @@ pub struct PlaneStats {
 /// How near the truth a frame is thought to be, and which dials were chosen for that.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AccuracyStats {
-    /// Relative L1 error of the irradiance, estimated from the same light done with two fifths of the water cells
+    /// Relative L1 error of the irradiance, estimated from the same light done with two fifths of the water cells or fewer
     /// (`quality.estimate_error`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimated_error: Option<f64>,

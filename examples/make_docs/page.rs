@@ -194,9 +194,10 @@ fn spread(ratios: &[f64]) -> String {
 
 fn estimates(chapters: &[Chapter]) -> String {
     let mut text = "\n## A frame's own estimate\n\n\
-        `quality.estimate_error` does the light once more with two fifths of the cells along a side, which is a sixth of their work, and\n\
-        with a quarter or a sixteenth of the floor's texels (all of them where their number does not halve), and compares. Estimate over\n\
-        true error, over all settings below whose error is at least three times the truth's own:\n\n\
+        `quality.estimate_error` does the light once more with two fifths of the cells along a side (or somewhat fewer, in whole\n\
+        workgroups), which is a sixth of their work or less, and with a quarter or a sixteenth of the floor's texels (all of them where\n\
+        their number does not halve), and compares. Estimate over true error, over all settings below whose error is at least three\n\
+        times the truth's own:\n\n\
         | scene | settings | estimate ÷ true error |\n| --- | ---: | ---: |\n"
         .to_owned();
     for chapter in chapters {

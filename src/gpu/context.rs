@@ -176,9 +176,10 @@ fn wanted_limits(adapter: &wgpu::Limits, software: bool) -> wgpu::Limits {
     let baseline = wgpu::Limits::default();
     let storage_buffers = baseline.max_storage_buffers_per_shader_stage;
     wgpu::Limits {
-        // Eight, and on a CPU driver the uniforms, with that of pieces: see `GpuContext::adapt`.
+        // Eight, and on a CPU driver the uniforms, with that of pieces: see `GpuContext::adapt`. Those are bound at offsets, which
+        // WebGPU promises for four.
         max_storage_buffers_per_shader_stage: if software {
-            storage_buffers + 5
+            storage_buffers + 4
         } else {
             storage_buffers
         },

@@ -10,7 +10,7 @@ pub mod timing;
 pub mod uniforms;
 
 pub use context::GpuContext;
-pub use kernel::{Binding, Kernel, RasterKernel};
+pub use kernel::{BindGroups, Binding, Kernel, RasterKernel};
 pub use pool::BufferPool;
 
 /// What can go wrong on the GPU.

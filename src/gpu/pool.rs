@@ -1,10 +1,12 @@
 //! Buffers that are lent to a frame and taken back, with an exact account of their bytes.
 
 /// How many frames a free buffer may lie unused before it is dropped.
-const KEEP_FRAMES: u64 = 4;
+pub(super) const KEEP_FRAMES: u64 = 4;
 
 #[derive(Debug)]
 struct Free {
+    /// What it was lent as.
+    label: &'static str,
     buffer: wgpu::Buffer,
     last_used: u64,
 }
@@ -20,36 +22,39 @@ pub struct BufferPool {
 
 impl BufferPool {
     /// Starts a frame, with nothing lent: forgets the last peak, drops what was not used for some frames, and then, what was
-    /// used longest ago first, as much as it takes to keep no more than `free_budget_bytes`.
-    pub fn begin_frame(&mut self, free_budget_bytes: u64) {
+    /// used longest ago first, as much as it takes to keep no more than `free_budget_bytes`. Whether it took any.
+    pub fn begin_frame(&mut self, free_budget_bytes: u64) -> bool {
         self.frame += 1;
         // A frame that failed half-way has dropped what it was lent.
         self.lent_bytes = 0;
         self.peak_bytes = self.lent_bytes;
         let frame = self.frame;
         self.free.retain(|f| f.last_used + KEEP_FRAMES >= frame);
+        let mut makes_room = false;
         while self.free_bytes() > free_budget_bytes {
             let oldest = (0..self.free.len()).min_by_key(|&index| self.free[index].last_used);
             let Some(index) = oldest else { break };
             self.free.swap_remove(index);
+            makes_room = true;
         }
+        makes_room
     }
 
-    /// Lends a buffer of exactly `bytes` (rounded up to 4) with `usage`; its content is undefined.
+    /// Lends a buffer of exactly `bytes` (rounded up to 4) with `usage`; its content is undefined. It is one that was lent as the same
+    /// before if there is one, so that frame after frame binds the same.
     pub fn lend(
         &mut self,
         device: &wgpu::Device,
-        label: &str,
+        label: &'static str,
         bytes: u64,
         usage: wgpu::BufferUsages,
     ) -> wgpu::Buffer {
         let size = bytes.max(4).next_multiple_of(4);
         self.lent_bytes += size;
         self.peak_bytes = self.peak_bytes.max(self.lent_bytes);
-        let found = self
-            .free
-            .iter()
-            .position(|f| f.buffer.size() == size && f.buffer.usage() == usage);
+        let fits = |f: &Free| f.buffer.size() == size && f.buffer.usage() == usage;
+        let own = self.free.iter().position(|f| f.label == label && fits(f));
+        let found = own.or_else(|| self.free.iter().position(fits));
         match found {
             Some(index) => self.free.swap_remove(index).buffer,
             None => device.create_buffer(&wgpu::BufferDescriptor {
@@ -61,10 +66,11 @@ impl BufferPool {
         }
     }
 
-    /// Takes a buffer back.
-    pub fn give_back(&mut self, buffer: wgpu::Buffer) {
+    /// Takes a buffer back that was lent as `label`.
+    pub fn give_back(&mut self, label: &'static str, buffer: wgpu::Buffer) {
         self.lent_bytes -= buffer.size();
         self.free.push(Free {
+            label,
             buffer,
             last_used: self.frame,
         });

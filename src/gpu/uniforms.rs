@@ -1,40 +1,103 @@
-//! Small constant buffers: equal bytes share one, within a frame and with the frame before.
+//! Small constants: equal bytes share a place in a buffer, within a frame and with the frames before. They are bound at an offset, so that
+//! what binds them does not change with what they hold.
 
 use std::collections::BTreeMap;
 
 use super::GpuContext;
+use super::pool::KEEP_FRAMES;
 
-/// The uniform buffers of the frame at work and of the one before, by what they hold.
+/// Places begin at multiples of this: no device asks for more.
+const ALIGNMENT: u64 = 256;
+/// Bytes of a buffer of places.
+const BUFFER_BYTES: u64 = 1 << 16;
+
+/// Where constants lie.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// The buffer that holds them, and others.
+    pub buffer: wgpu::Buffer,
+    /// Where they begin in it.
+    pub offset: u32,
+    /// How many bytes they are.
+    pub bytes: u64,
+}
+
+/// Constants by what they are, kept for some frames. There are no more buffers than the frames since the start (or since the last idleness)
+/// needed at once.
 #[derive(Debug, Default)]
 pub struct Uniforms {
-    used: BTreeMap<Vec<u8>, wgpu::Buffer>,
-    before: BTreeMap<Vec<u8>, wgpu::Buffer>,
+    kept: BTreeMap<Vec<u8>, KeptPlace>,
+    /// Places that nobody needs any more, by their room.
+    free: BTreeMap<u64, Vec<(wgpu::Buffer, u32)>>,
+    /// The newest buffer, and where it is empty from.
+    newest: Option<(wgpu::Buffer, u64)>,
+    frame: u64,
+}
+
+#[derive(Debug)]
+struct KeptPlace {
+    placed: Placed,
+    last_used: u64,
 }
 
 impl Uniforms {
-    /// Starts a frame: what the last one did not use is dropped.
+    /// Starts a frame: places that were not used for some frames are free.
     pub fn begin_frame(&mut self) {
-        self.before = std::mem::take(&mut self.used);
+        self.frame += 1;
+        let (frame, free) = (self.frame, &mut self.free);
+        self.kept.retain(|_, KeptPlace { placed, last_used }| {
+            let stays = *last_used + KEEP_FRAMES >= frame;
+            if !stays {
+                let places = free.entry(room(placed.bytes)).or_default();
+                places.push((placed.buffer.clone(), placed.offset));
+            }
+            stays
+        });
     }
 
-    /// The buffer that holds `bytes`; nobody else may write to it.
-    pub fn get(&mut self, gpu: &GpuContext, label: &str, bytes: &[u8]) -> wgpu::Buffer {
-        if let Some(buffer) = self.used.get(bytes) {
-            return buffer.clone();
+    /// The place that holds `bytes` for what is submitted from now on; nobody else may write to it.
+    pub fn get(&mut self, gpu: &GpuContext, bytes: &[u8]) -> Placed {
+        if let Some(kept) = self.kept.get_mut(bytes) {
+            kept.last_used = self.frame;
+            return kept.placed.clone();
         }
-        let buffer = self.before.remove(bytes).unwrap_or_else(|| {
+        let (buffer, offset) = self.place(gpu, room(bytes.len() as u64));
+        gpu.queue.write_buffer(&buffer, u64::from(offset), bytes);
+        let placed = Placed {
+            buffer,
+            offset,
+            bytes: bytes.len() as u64,
+        };
+        let kept = KeptPlace {
+            placed: placed.clone(),
+            last_used: self.frame,
+        };
+        self.kept.insert(bytes.to_vec(), kept);
+        placed
+    }
+
+    /// A place that holds nothing.
+    fn place(&mut self, gpu: &GpuContext, room: u64) -> (wgpu::Buffer, u32) {
+        if let Some(place) = self.free.get_mut(&room).and_then(Vec::pop) {
+            return place;
+        }
+        let has_room = |(buffer, from): &(wgpu::Buffer, u64)| from + room <= buffer.size();
+        let (buffer, from) = self.newest.take().filter(has_room).unwrap_or_else(|| {
             let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: bytes.len() as u64,
+                label: Some("uniforms"),
+                size: BUFFER_BYTES.max(room),
                 usage: wgpu::BufferUsages::UNIFORM
                     | wgpu::BufferUsages::STORAGE
                     | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            gpu.queue.write_buffer(&buffer, 0, bytes);
-            buffer
+            (buffer, 0)
         });
-        self.used.insert(bytes.to_vec(), buffer.clone());
-        buffer
+        self.newest = Some((buffer.clone(), from + room));
+        (buffer, u32::try_from(from).unwrap_or(u32::MAX))
     }
+}
+
+fn room(bytes: u64) -> u64 {
+    bytes.next_multiple_of(ALIGNMENT)
 }

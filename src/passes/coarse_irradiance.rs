@@ -1,4 +1,4 @@
-//! Coarse irradiance — what the light that is done again with two fifths of the water cells leaves at the places where the estimate
+//! Coarse irradiance — what the light that is done again with two fifths of the water cells or fewer leaves at the places where the estimate
 //! looks: coarse maps are never made whole.
 
 use super::desc::{PassDesc, Repeat, Run, Step, Work};
@@ -18,7 +18,7 @@ pub const PASS: PassDesc = PassDesc {
         estimate::wanted(facts)?;
         Ok(format!(
             "the light is done again with {} water cells",
-            facts.coarse().quality.water_cells
+            estimate::coarse_cells(facts)
         ))
     },
     steps: |facts, run| {
@@ -30,7 +30,7 @@ pub const PASS: PassDesc = PassDesc {
         else {
             return Vec::new();
         };
-        let compared = estimate::compared(fine, facts);
+        let compared = estimate::compared(fine);
         let floors: Vec<Compared> = (compared.iter().copied())
             .filter(|c| c.light.is_none())
             .collect();

@@ -52,11 +52,8 @@ pub enum Run<'a> {
         /// The scene whose maps are compared with.
         fine: &'a SceneFacts,
     },
-    /// Look at the finished maps, beside the coarse ones of these facts.
-    Frame {
-        /// The scene with coarser water and maps.
-        coarse: &'a SceneFacts,
-    },
+    /// Look at the finished maps, beside what the light has left that was done coarsely.
+    Frame,
     /// Make these rows of the picture.
     Band {
         /// First row.

@@ -29,10 +29,10 @@ pub const PASS: PassDesc = PassDesc {
         Ok("the maps are compared with those of the light done coarsely".to_owned())
     },
     steps: |facts, run| {
-        let Run::Frame { coarse } = run else {
+        let Run::Frame = run else {
             return Vec::new();
         };
-        let compared = compared(facts, coarse);
+        let compared = compared(facts);
         let group_count = groups_of(&compared);
         let estimate = Estimate {
             comparison_count: compared.len() as u32,
@@ -74,7 +74,8 @@ impl Compared {
 }
 
 /// All maps that are compared: the floor's, then those of the first light, of the second, and so on.
-pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<Compared> {
+pub fn compared(facts: &SceneFacts) -> Vec<Compared> {
+    let coarse_floor = coarse_floor_map(facts);
     let mut all: Vec<Compared> = Vec::new();
     let mut add = |mut comparison: Comparison, texel_m2: f64, light: Option<usize>| {
         let all_places = if comparison.blocks == 1 {
@@ -99,7 +100,7 @@ pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<Compared> {
             light,
         });
     };
-    if let (Some(fine), Some(low)) = (facts.floor_map, coarse.floor_map) {
+    if let (Some(fine), Some(low)) = (facts.floor_map, coarse_floor) {
         let size = fine.rect.size();
         let comparison = Comparison {
             fine_width: fine.width,
@@ -112,7 +113,10 @@ pub fn compared(facts: &SceneFacts, coarse: &SceneFacts) -> Vec<Compared> {
         let texel_m2 = size.x * size.y / (f64::from(fine.width) * f64::from(fine.height));
         add(comparison, texel_m2, None);
     }
-    let (fine, low) = (MapLayout::of(facts), MapLayout::of(coarse));
+    let (fine, low) = (
+        MapLayout::of(facts),
+        MapLayout::with_floor(facts, coarse_floor),
+    );
     let layers = facts.quality.layers;
     for (index, light) in facts.lights.iter().enumerate() {
         for (object, level_box) in light.boxes.iter().enumerate() {
@@ -153,55 +157,59 @@ pub fn groups_of(compared: &[Compared]) -> u32 {
         .map_or(0, |last| last.comparison.first_group + last.groups())
 }
 
-/// Two fifths of so many water cells along a side; fewer where that makes whole workgroups, a third at least.
-fn coarse_cells(water_cells: u32) -> u32 {
-    let two_fifths = (2 * water_cells / 5).max(1);
+/// Two fifths of the water cells along a side; fewer where that makes whole workgroups, a third at least.
+pub fn coarse_cells(facts: &SceneFacts) -> u32 {
+    let fine = facts.quality.water_cells;
+    let two_fifths = (2 * fine / 5).max(1);
     let in_whole_groups = two_fifths - two_fifths % CELLS_ALONG_GROUP;
-    if 3 * in_whole_groups >= water_cells {
+    if 3 * in_whole_groups >= fine {
         in_whole_groups
     } else {
         two_fifths
     }
 }
 
+/// The floor's map of the light that is done coarsely: where that divides evenly, half its texels along a side, and a quarter where those are
+/// still as many as the frame has water cells, because then only a few cells' light lies in a texel.
+///
+/// A view's map is always halved, since it is looked up between its texels.
+pub fn coarse_floor_map(facts: &SceneFacts) -> Option<FloorMap> {
+    let map = facts.floor_map?;
+    let sides = [map.width, map.height];
+    let quarters = |texels: u32| {
+        texels.is_multiple_of(QUARTER) && texels / QUARTER >= facts.quality.water_cells
+    };
+    let is_view = facts.camera.is_some();
+    let [width, height] = if !is_view && sides.into_iter().all(quarters) {
+        sides.map(|texels| texels / QUARTER)
+    } else {
+        sides.map(|texels| {
+            if is_view || texels.is_multiple_of(2) {
+                texels.div_ceil(2)
+            } else {
+                texels
+            }
+        })
+    };
+    Some(FloorMap {
+        width,
+        height,
+        ..map
+    })
+}
+
 impl SceneFacts {
-    /// The same scene with two fifths of the water cells along each side (see [`coarse_cells`]) and, where that divides evenly, half the floor's texels; a
-    /// quarter of them where those are still as many as the frame has water cells, because then only a few cells' light lies in a texel.
-    /// So it is a sixth of the cells' work, but of the texels' a sixteenth or a quarter, and all of it of meshes' maps and where the
-    /// floor's do not divide.
+    /// The same scene for a light that is done coarsely: with [fewer water cells](coarse_cells) and a [smaller map of the
+    /// floor](coarse_floor_map). So it is a ninth to a sixth of the cells' work, but of the texels' a sixteenth or a quarter, and all of it of meshes'
+    /// maps and where the floor's do not divide.
     ///
     /// Beams that straddle receivers are halved once less.
-    ///
-    /// A view's map is always halved, since it is looked up between its texels.
     #[must_use]
     pub fn coarse(&self) -> Self {
-        let is_view = self.camera.is_some();
-        let lowered = |map: FloorMap| {
-            let sides = [map.width, map.height];
-            let quarters = |texels: u32| {
-                texels.is_multiple_of(QUARTER) && texels / QUARTER >= self.quality.water_cells
-            };
-            let [width, height] = if !is_view && sides.into_iter().all(quarters) {
-                sides.map(|texels| texels / QUARTER)
-            } else {
-                sides.map(|texels| {
-                    if is_view || texels.is_multiple_of(2) {
-                        texels.div_ceil(2)
-                    } else {
-                        texels
-                    }
-                })
-            };
-            FloorMap {
-                width,
-                height,
-                ..map
-            }
-        };
         let mut coarse = self.clone();
-        coarse.quality.water_cells = coarse_cells(self.quality.water_cells);
+        coarse.quality.water_cells = coarse_cells(self);
         coarse.quality.split_levels = self.quality.split_levels.saturating_sub(1);
-        coarse.floor_map = self.floor_map.map(lowered);
+        coarse.floor_map = coarse_floor_map(self);
         coarse
     }
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::light::places_by_planes;
 use crate::scene::Receiver;
-use crate::scene::facts::SceneFacts;
+use crate::scene::facts::{FloorMap, SceneFacts};
 
 /// Where a map lies that nobody asks for, as in `shaders/shared/receivers.wgsl`.
 pub const NOWHERE: u32 = u32::MAX;
@@ -37,9 +37,12 @@ pub struct MapLayout {
 impl MapLayout {
     /// The layout for a scene.
     pub fn of(facts: &SceneFacts) -> Self {
-        let floor = facts
-            .floor_map
-            .map_or(0, |map| u64::from(map.width) * u64::from(map.height));
+        Self::with_floor(facts, facts.floor_map)
+    }
+
+    /// The layout for a scene with another map of the floor.
+    pub fn with_floor(facts: &SceneFacts, floor_map: Option<FloorMap>) -> Self {
+        let floor = floor_map.map_or(0, |map| u64::from(map.width) * u64::from(map.height));
         let mut end = floor;
         let objects = facts
             .objects

@@ -346,7 +346,7 @@ impl Slot {
             Self::Energy => 8 * ENERGY_TERMS,
             Self::Irradiance => 12 * MapLayout::of(facts).irradiance_texels(),
             Self::Comparisons | Self::CoarseIrradiance | Self::Differences => {
-                let compared = estimate::compared(facts, &facts.coarse());
+                let compared = estimate::compared(facts);
                 let groups = u64::from(estimate::groups_of(&compared));
                 match self {
                     Self::Comparisons => {
@@ -452,10 +452,11 @@ fn receiver_bytes(facts: &SceneFacts) -> u64 {
     size_of::<super::gpu_data::Receiver>() as u64 * receivers
 }
 
-/// A dispatch of so many workgroups in a row, which may be more than fit one axis; shaders pass over the last ones.
+/// A dispatch of so many workgroups in a row, which may be more than fit one axis: then in rows of the same length. Shaders pass over the
+/// last ones.
 pub fn in_columns(groups: u32) -> Groups {
-    let columns = groups.clamp(1, MOST_GROUPS);
-    Groups::Direct([columns, groups.div_ceil(columns), 1])
+    let rows = groups.div_ceil(MOST_GROUPS).max(1);
+    Groups::Direct([groups.div_ceil(rows).max(1), rows, 1])
 }
 
 /// Rows of a picture that are made at once.

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{RenderError, Renderer, geometry, slot_name};
+use crate::gpu::Binding;
+use crate::gpu::uniforms::Placed;
 use crate::passes::desc::Step;
 use crate::passes::gpu_data::{Comparison, Receiver, Wave};
 use crate::passes::slot::{SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
@@ -11,6 +13,11 @@ use crate::plan::Plan;
 use crate::scene::ResolvedScene;
 use crate::scene::facts::SceneFacts;
 use crate::scene::placement::LevelMapKey;
+
+/// Names of the buffers beside the slots'.
+pub(super) const EMPTY_LIST: &str = "empty list";
+pub(super) const QUEUE_HEADS: &str = "queue heads";
+pub(super) const INDIRECT: &str = "indirect";
 
 /// The buffers of one frame, by slot name.
 pub(super) struct FrameBuffers {
@@ -37,6 +44,20 @@ impl FrameBuffers {
     pub(super) fn slice(&self, plane: u32) -> Option<wgpu::TextureView> {
         let slices = self.slices.as_ref()?;
         slices.colors.get(plane as usize).cloned()
+    }
+}
+
+/// Where the uniforms of a step lie, by name.
+pub(super) struct PlacedUniforms(Vec<(&'static str, Placed)>);
+
+impl PlacedUniforms {
+    /// What a variable of this name is bound to: the step's uniform, or else the frame's buffer.
+    pub(super) fn or_buffer<'a>(&'a self, name: &str, buffers: &'a FrameBuffers) -> Binding<'a> {
+        let own = self.0.iter().find(|(own, _)| *own == name);
+        own.map_or_else(
+            || Binding::Buffer(buffers.get(name)),
+            |(_, placed)| Binding::Uniform(placed),
+        )
     }
 }
 
@@ -108,14 +129,14 @@ impl Renderer {
         }
         let queue_heads = self
             .pool
-            .lend(&device, "queue heads", 32, U::COPY_SRC | U::COPY_DST);
+            .lend(&device, QUEUE_HEADS, 32, U::COPY_SRC | U::COPY_DST);
         let heads: [[u32; 4]; 2] = [[0, 1, 1, 0], [0, WIDE_GROUPS, 1, 0]];
         self.gpu
             .queue
             .write_buffer(&queue_heads, 0, bytemuck::cast_slice(&heads));
         let empty = self
             .pool
-            .lend(&device, "empty list", 256, U::STORAGE | U::COPY_DST);
+            .lend(&device, EMPTY_LIST, 256, U::STORAGE | U::COPY_DST);
         self.gpu.queue.write_buffer(&empty, 0, &[0; 256]);
         let buffers = FrameBuffers {
             by_name,
@@ -124,7 +145,7 @@ impl Renderer {
             slices,
             indirect: self.pool.lend(
                 &device,
-                "indirect",
+                INDIRECT,
                 12,
                 U::INDIRECT | U::COPY_DST | U::COPY_SRC,
             ),
@@ -167,7 +188,7 @@ impl Renderer {
             .collect();
         write(Slot::AllReceivers, bytemuck::cast_slice(&all));
         if buffers.by_name.contains_key(slot_name(Slot::Comparisons)) {
-            let compared = estimate::compared(facts, &facts.coarse());
+            let compared = estimate::compared(facts);
             let all: Vec<Comparison> = compared.iter().map(|map| map.comparison).collect();
             write(Slot::Comparisons, bytemuck::cast_slice(&all));
         }
@@ -192,6 +213,8 @@ impl Renderer {
             .as_ref()
             .is_some_and(|g| g.holds(&resolved.meshes))
         {
+            // They hold the last one.
+            self.bind_groups.clear();
             self.geometry = Some(geometry::Geometry::upload(&self.gpu, &resolved.meshes));
         }
         self.geometry.as_ref().map(|g| g.buffer.clone())
@@ -269,11 +292,10 @@ impl Renderer {
             .create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    pub(super) fn uniform_buffers(&mut self, step: &Step) -> BTreeMap<&'static str, wgpu::Buffer> {
-        step.uniforms
-            .iter()
-            .map(|(name, bytes)| (*name, self.uniforms.get(&self.gpu, name, bytes)))
-            .collect()
+    pub(super) fn place_uniforms(&mut self, step: &Step) -> PlacedUniforms {
+        let placed = step.uniforms.iter();
+        let placed = placed.map(|(name, bytes)| (*name, self.uniforms.get(&self.gpu, bytes)));
+        PlacedUniforms(placed.collect())
     }
 }
 

@@ -383,16 +383,19 @@ fn check_finite(name: LayerName, layer: &Layer, width: u32) -> Result<(), Render
 
 /// The frame's estimate of its own relative L1 error; `None` where no light landed.
 pub(super) fn estimated_error(facts: &SceneFacts, differences: &[[f32; 4]]) -> Option<f64> {
-    let coarse = facts.coarse();
     let (mut difference_w, mut landed_w) = (0.0, 0.0);
-    for map in estimate::compared(facts, &coarse) {
+    for map in estimate::compared(facts) {
         let first = map.comparison.first_group as usize;
         for sums in &differences[first..first + map.groups() as usize] {
             difference_w += f64::from(sums[0]) * map.texel_m2;
             landed_w += f64::from(sums[1]) * map.texel_m2;
         }
     }
-    let texels = match (facts.camera, facts.floor_map, coarse.floor_map) {
+    let texels = match (
+        facts.camera,
+        facts.floor_map,
+        estimate::coarse_floor_map(facts),
+    ) {
         (Some(_), ..) => Compared::Between,
         (None, Some(fine), Some(low)) => Compared::Blocks(fine.width / low.width),
         (None, ..) => Compared::Blocks(1),
@@ -401,7 +404,7 @@ pub(super) fn estimated_error(facts: &SceneFacts, differences: &[[f32; 4]]) -> O
         estimate_error(&FrameComparison {
             difference: difference_w / landed_w,
             cells_ratio: f64::from(facts.quality.water_cells)
-                / f64::from(coarse.quality.water_cells),
+                / f64::from(estimate::coarse_cells(facts)),
             texels,
         })
     })

@@ -241,7 +241,7 @@ impl Renderer {
         buffers: &FrameBuffers,
         texture: &dyn Fn(&str) -> Option<wgpu::TextureView>,
     ) -> Result<(), GpuError> {
-        let uniforms = self.uniform_buffers(step);
+        let uniforms = self.place_uniforms(step);
         let kernel = &self.kernels[&key];
         let textures: BTreeMap<&str, wgpu::TextureView> = kernel
             .bindings()
@@ -249,11 +249,9 @@ impl Renderer {
             .filter(|bound| matches!(bound.access, Access::Texture(_)))
             .filter_map(|bound| Some((bound.name.as_str(), texture(&bound.name)?)))
             .collect();
-        let group = kernel.bind(&self.gpu, |name| match textures.get(name) {
-            Some(view) => Some(Binding::Texture(view)),
-            None => Some(Binding::Buffer(
-                uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
-            )),
+        let bound = kernel.bind(&self.gpu, &mut self.bind_groups, |name| {
+            let texture = textures.get(name).map(Binding::Texture);
+            texture.or_else(|| Some(uniforms.or_buffer(name, buffers)))
         })?;
         let timestamp_writes = self.timing.span(key.0).map(|(query_set, begin, end)| {
             wgpu::ComputePassTimestampWrites {
@@ -267,7 +265,7 @@ impl Renderer {
             timestamp_writes,
         });
         compute.set_pipeline(kernel.pipeline());
-        compute.set_bind_group(0, &group, &[]);
+        compute.set_bind_group(0, &bound.group, &bound.offsets);
         match launch {
             Launch::Groups([x, y, z]) => compute.dispatch_workgroups(x, y, z),
             Launch::Counted => compute.dispatch_workgroups_indirect(&buffers.indirect, 0),
@@ -307,14 +305,13 @@ impl Renderer {
             )?;
             self.raster_kernels.insert(key, kernel);
         }
-        let uniforms = self.uniform_buffers(step);
+        let uniforms = self.place_uniforms(step);
         let kernel = &self.raster_kernels[&key];
-        let group = kernel.bind(&self.gpu, |name| match (name, surface) {
+        let groups = &mut self.bind_groups;
+        let bound = kernel.bind(&self.gpu, groups, |name| match (name, surface) {
             ("previous_depth", Surface::Layer(1)) => Some(Binding::Texture(&targets.front)),
             ("previous_depth", Surface::Layer(layer)) => further(targets, layer - 1, 0),
-            _ => Some(Binding::Buffer(
-                uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
-            )),
+            _ => Some(uniforms.or_buffer(name, buffers)),
         })?;
         let (color, normal) = match surface {
             Surface::Front => (&targets.front, &targets.normal),
@@ -364,7 +361,7 @@ impl Renderer {
             ..Default::default()
         });
         draw.set_pipeline(kernel.pipeline());
-        draw.set_bind_group(0, &group, &[]);
+        draw.set_bind_group(0, &bound.group, &bound.offsets);
         draw.draw(0..vertices, 0..1);
         Ok(())
     }

@@ -65,9 +65,8 @@ impl Renderer {
             self.runs_in_one_go(light, coarse, of_light, buffers)
                 && self.runs_in_one_go(coarse_light, coarse, of_coarse, buffers)
         };
-        let of_frame = Run::Frame { coarse };
         if !in_turn.iter().all(in_one_go)
-            || !self.runs_in_one_go(estimate, facts, of_frame, buffers)
+            || !self.runs_in_one_go(estimate, facts, Run::Frame, buffers)
         {
             return Ok(Vec::new());
         }
@@ -85,8 +84,7 @@ impl Renderer {
                 &mut nothing,
             )?);
             if index + 1 == in_turn.len() {
-                let differences =
-                    self.record_estimate(&mut encoder, estimate, coarse, facts, buffers)?;
+                let differences = self.record_estimate(&mut encoder, estimate, facts, buffers)?;
                 comparison.sent = Some((differences, std::mem::take(&mut accounts)));
             }
             recorded.push(encoder.finish());
@@ -124,7 +122,7 @@ impl Renderer {
             self.timing.note(name, ms_since(began));
             started = Recording::start(time_ms);
         }
-        let differences = self.record_estimate(&mut encoder, estimate, coarse, facts, buffers)?;
+        let differences = self.record_estimate(&mut encoder, estimate, facts, buffers)?;
         if by_host {
             let ms = self.submit(encoder, started, time_ms)?;
             // Where it ran in pieces, those are noted already.
@@ -141,12 +139,11 @@ impl Renderer {
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         estimate: &[&'static PassDesc],
-        coarse: &SceneFacts,
         facts: &SceneFacts,
         buffers: &FrameBuffers,
     ) -> Result<Staged, RenderError> {
         for pass in estimate {
-            self.record(encoder, pass, facts, Run::Frame { coarse }, buffers, None)?;
+            self.record(encoder, pass, facts, Run::Frame, buffers, None)?;
         }
         let differences = buffers.get(slot_name(Slot::Differences));
         let bytes = Slot::Differences.bytes(facts);

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use tokio_util::sync::CancellationToken;
 
-use super::buffers::{FrameBuffers, clear_for_light};
+use super::buffers::{EMPTY_LIST, FrameBuffers, INDIRECT, QUEUE_HEADS, clear_for_light};
 use super::collect::{ACCOUNT_BYTES, has_wrapped};
 use super::commands::Recording;
 use super::comparison::{Comparison, ComparisonPasses};
@@ -59,11 +59,15 @@ impl Renderer {
         } = buffers;
         for (name, buffer) in by_name {
             if name != slot_name(Slot::Geometry) && name != slot_name(Slot::LevelMaps) {
-                self.pool.give_back(buffer);
+                self.pool.give_back(name, buffer);
             }
         }
-        for buffer in [empty, queue_heads, indirect] {
-            self.pool.give_back(buffer);
+        for (label, buffer) in [
+            (EMPTY_LIST, empty),
+            (QUEUE_HEADS, queue_heads),
+            (INDIRECT, indirect),
+        ] {
+            self.pool.give_back(label, buffer);
         }
         result.map(|mut run| {
             run.peak_bytes = peak_bytes;

@@ -22,7 +22,7 @@ use crate::frame::Frame;
 use crate::gpu::shader::ShaderSources;
 use crate::gpu::timing::Timing;
 use crate::gpu::uniforms::Uniforms;
-use crate::gpu::{BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
+use crate::gpu::{BindGroups, BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
 use crate::level_map::{ArenaError, LevelMapCache};
 use crate::passes::{self, Repeat, Slot, shaders};
 use crate::plan::{self, Cached, Plan};
@@ -94,6 +94,7 @@ pub struct Renderer {
     sources: ShaderSources,
     pool: BufferPool,
     uniforms: Uniforms,
+    bind_groups: BindGroups,
     timing: Timing,
     kernels: BTreeMap<KernelKey, Kernel>,
     raster_kernels: BTreeMap<RasterKey, RasterKernel>,
@@ -143,6 +144,7 @@ impl Renderer {
             sources,
             pool: BufferPool::default(),
             uniforms: Uniforms::default(),
+            bind_groups: BindGroups::default(),
             kernels: BTreeMap::new(),
             raster_kernels: BTreeMap::new(),
             slice_kernel: None,
@@ -309,8 +311,11 @@ impl Renderer {
             .level_maps
             .reserve(&plan::level_maps(facts))
             .map_err(|error| self.level_maps_over_budget(error))?;
-        self.pool
-            .begin_frame(self.memory_budget_bytes.saturating_sub(plan.peak_bytes));
+        let free_budget_bytes = self.memory_budget_bytes.saturating_sub(plan.peak_bytes);
+        self.bind_groups.begin_frame();
+        if self.pool.begin_frame(free_budget_bytes) {
+            self.bind_groups.clear();
+        }
         self.idle_polls = 0;
         self.uniforms.begin_frame();
         self.timing.begin_frame();
@@ -323,7 +328,7 @@ impl Renderer {
             self.level_maps.clear();
             self.arena = None;
             self.geometry = None;
-            self.pool.clear();
+            self.drop_buffers();
             self.gpu.forget_errors();
         }
         result
@@ -346,6 +351,14 @@ impl Renderer {
     pub fn forget_mesh(&mut self, id: &str) {
         self.level_maps.forget_mesh(id);
         self.geometry = None;
+        self.bind_groups.clear();
+    }
+
+    /// Drops all buffers that are kept for later frames, but for level maps and geometry.
+    fn drop_buffers(&mut self) {
+        self.pool.clear();
+        self.uniforms = Uniforms::default();
+        self.bind_groups.clear();
     }
 
     /// The level-map cache since the start (hits, misses, evictions) and now (entries, bytes).
@@ -361,6 +374,11 @@ impl Renderer {
     /// How often since the start what comes after a light was recorded while the GPU was at work on it.
     pub fn recorded_ahead(&self) -> u64 {
         self.recorded_ahead
+    }
+
+    /// How many bind groups were made since the start that may serve a later dispatch too.
+    pub fn bind_groups_made(&self) -> u64 {
+        self.bind_groups.made()
     }
 
     /// Whether frames report what the GPU's allocator has given out (`stats.memory.allocated_bytes`).
@@ -404,7 +422,7 @@ impl Renderer {
     pub fn idle(&mut self) -> Result<(), GpuError> {
         self.idle_polls = self.idle_polls.saturating_add(1);
         if self.idle_polls == IDLE_POLLS {
-            self.pool.clear();
+            self.drop_buffers();
         }
         self.gpu.tidy();
         self.gpu.check()

@@ -4,7 +4,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::{RenderError, Renderer};
 use crate::gpu::shader::ShaderSources;
-use crate::gpu::{Binding, GpuContext, GpuError, Kernel, readback};
+use crate::gpu::{BindGroups, Binding, GpuContext, GpuError, Kernel, readback};
 use crate::physics::{attenuation, fresnel, refraction, registry};
 use crate::scene::{ResolvedScene, Scene};
 
@@ -219,7 +219,7 @@ fn run_twin(
     let target = buffer("results", 16 * inputs.len() as u64);
     gpu.queue
         .write_buffer(&source, 0, bytemuck::cast_slice(&arguments));
-    let group = kernel.bind(gpu, |name| match name {
+    let bound = kernel.bind(gpu, &mut BindGroups::default(), |name| match name {
         "arguments" => Some(Binding::Buffer(&source)),
         "results" => Some(Binding::Buffer(&target)),
         _ => None,
@@ -230,7 +230,7 @@ fn run_twin(
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(kernel.pipeline());
-        pass.set_bind_group(0, &group, &[]);
+        pass.set_bind_group(0, &bound.group, &bound.offsets);
         pass.dispatch_workgroups(
             u32::try_from(inputs.len().div_ceil(64)).unwrap_or(u32::MAX),
             1,

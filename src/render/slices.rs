@@ -3,7 +3,7 @@
 use super::Renderer;
 use super::buffers::FrameBuffers;
 use crate::gpu::kernel::RasterTargets;
-use crate::gpu::{Binding, GpuError, RasterKernel};
+use crate::gpu::{GpuError, RasterKernel};
 use crate::passes::desc::{PassDesc, Step};
 
 impl Renderer {
@@ -28,14 +28,12 @@ impl Renderer {
                 },
             )?);
         }
-        let uniforms = self.uniform_buffers(step);
+        let uniforms = self.place_uniforms(step);
         let (Some(kernel), Some(slices)) = (&self.slice_kernel, &buffers.slices) else {
             return Ok(());
         };
-        let group = kernel.bind(&self.gpu, |name| {
-            Some(Binding::Buffer(
-                uniforms.get(name).unwrap_or_else(|| buffers.get(name)),
-            ))
+        let bound = kernel.bind(&self.gpu, &mut self.bind_groups, |name| {
+            Some(uniforms.or_buffer(name, buffers))
         })?;
         let timestamp_writes = self.timing.span(pass.name).map(|(query_set, begin, end)| {
             wgpu::RenderPassTimestampWrites {
@@ -67,7 +65,7 @@ impl Renderer {
             ..Default::default()
         });
         draw.set_pipeline(kernel.pipeline());
-        draw.set_bind_group(0, &group, &[]);
+        draw.set_bind_group(0, &bound.group, &bound.offsets);
         // The images are as large as the largest object's.
         let side = texels as f32;
         draw.set_viewport(0.0, 0.0, side, side, 0.0, 1.0);

@@ -128,9 +128,9 @@ pub struct SceneFacts {
     pub air_lights: Vec<AirLight>,
     /// Sum of the skies, W/(m² sr).
     pub sky_radiance: [f64; 3],
-    /// Share of sky light that flat water lets through.
+    /// Share of sky light that flat water lets through; 1 without a sky.
     pub sky_transmittance: f64,
-    /// Mean path of sky light per depth.
+    /// Mean path of sky light per depth; 1 without a sky.
     pub sky_path_factor: f64,
     /// The floor.
     pub floor: Option<FloorFacts>,
@@ -174,6 +174,15 @@ impl SceneFacts {
             std::array::from_fn(|c| water.absorption_per_m[c] + water.scattering_per_m[c]);
         let air_lights = air_lights(&scene.lights, origin_m, &surface)?;
         let sky_radiance = sky_sum(&scene.lights);
+        // Integrals that take as long as planning a small frame.
+        let (sky_transmittance, sky_path_factor) = if sky_radiance == [0.0; 3] {
+            (1.0, 1.0)
+        } else {
+            (
+                fresnel::diffuse_transmittance(water.ior),
+                sky::sky_path_factor(water.ior),
+            )
+        };
         let floor = scene.floor.as_ref().map(|f| {
             let centre = DVec2::from(f.center_m) - DVec2::new(origin_m.x, origin_m.z);
             let half = DVec2::from(f.size_m) * 0.5;
@@ -195,8 +204,8 @@ impl SceneFacts {
             white_radiance: white_radiance(scene, origin_m, &surface, sky_radiance),
             air_lights,
             sky_radiance,
-            sky_transmittance: fresnel::diffuse_transmittance(water.ior),
-            sky_path_factor: sky::sky_path_factor(water.ior),
+            sky_transmittance,
+            sky_path_factor,
             floor,
             floor_map: None,
             objects: resolved.placed_objects(origin_m, surface.max_height_m()),

@@ -64,7 +64,7 @@ pub struct Quality {
     #[schema(minimum = 0.1, maximum = 3_600_000.0)]
     pub time_budget_ms: Option<f64>,
     /// Whether the frame estimates its own error (`stats.accuracy.estimated_error`) by doing the light a second time with two fifths of the
-    /// water cells. Default false.
+    /// water cells or fewer. Default false.
     pub estimate_error: bool,
     /// Rays per pixel of a view along each side, 1 … 8. Default 1. Smooths edges; the camera's passes cost its square. Layers
     /// other than radiance are never averaged: they are those of the pixel's middle.

@@ -11,7 +11,8 @@ const MAP_ORDER: f64 = 1.75;
 const TRUSTED_BELOW: f64 = 0.06;
 /// The same of a view, whose error is mostly what its map's texels blur, and that is known earlier.
 const TRUSTED_BELOW_IN_VIEW: f64 = 0.12;
-/// What an error that is not trusted may truly be, times: with 64 cells looks saw down to 0.55 of it (docs/accuracy.md).
+/// What an error that is not trusted may truly be, times: with 64 cells looks saw down to 0.72 of a map's and 0.57 of
+/// a view's (docs/accuracy.md).
 const UNTRUSTED: f64 = 2.0;
 /// Least and largest order that is believed of a view: its map's texels blur, and what they blur is sharp.
 const VIEW_ORDER: (f64, f64) = (0.5, 2.0);

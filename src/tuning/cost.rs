@@ -66,10 +66,12 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
         }
         "landed" => texels * f64::from(facts.channels()),
         "irradiance" => texels,
-        // All the light's passes with two fifths of the cells on the coarse maps, then its part of the places that are looked at.
+        // All the light's passes with fewer cells on the coarse maps, then its part of the places that are looked at.
         "coarse_irradiance" => {
-            let coarse_texels = MapLayout::of(&facts.coarse()).flux_texels() as f64;
-            0.4_f64.powi(2) * cells * (5.0 * sums + 2.0 + waves + wet.sqrt())
+            let coarse_texels = MapLayout::with_floor(facts, estimate::coarse_floor_map(facts))
+                .flux_texels() as f64;
+            f64::from(estimate::coarse_cells(facts)).powi(2)
+                * (5.0 * sums + 2.0 + waves + wet.sqrt())
                 + coarse_texels * sums
                 + places_of_a_light(facts)
         }
@@ -82,7 +84,7 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
 
 /// Places at which a frame's estimate of its own error compares these maps.
 fn compared_places(facts: &SceneFacts, these: impl Fn(&Compared) -> bool) -> f64 {
-    let compared = estimate::compared(facts, &facts.coarse());
+    let compared = estimate::compared(facts);
     let these = compared.iter().filter(|map| these(map));
     these.map(|map| f64::from(map.comparison.places)).sum()
 }

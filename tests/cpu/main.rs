@@ -7,6 +7,7 @@
 )]
 
 mod accuracy_dial;
+mod accuracy_estimate;
 mod accuracy_metrics;
 mod accuracy_plot;
 mod accuracy_report;

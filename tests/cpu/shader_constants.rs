@@ -222,6 +222,22 @@ fn check_cover(pass: &PassDesc, facts: &SceneFacts, run: Run<'_>, tile: [u32; 2]
 }
 
 #[test]
+fn long_rows_of_workgroups_are_folded_evenly() {
+    for groups in [
+        0, 1, 65_534, 65_535, 65_536, 65_601, 131_070, 131_071, 4_000_000,
+    ] {
+        let Groups::Direct([x, y, z]) = slot::in_columns(groups) else {
+            panic!("no fixed number");
+        };
+        assert!(x <= 65_535 && y <= 65_535 && z == 1, "{groups}");
+        assert!(
+            x * y >= groups && x * y < groups.max(1) + y,
+            "{groups}: {x} × {y}"
+        );
+    }
+}
+
+#[test]
 fn dispatches_cover_their_work() {
     let facts = facts();
     let light = Run::Light {
@@ -284,7 +300,6 @@ fn sums_over_texels_cover_all_of_them() {
 #[test]
 fn every_entry_point_is_run_by_a_step() {
     let facts = facts();
-    let coarse = facts.coarse();
     let mut level_box = facts.lights[0].boxes[0].clone().unwrap();
     level_box.key.layers = 2;
     for pass in passes::ALL {
@@ -304,7 +319,7 @@ fn every_entry_point_is_run_by_a_step() {
                 wide_sums: false,
                 fine: &facts,
             },
-            Repeat::Frame => Run::Frame { coarse: &coarse },
+            Repeat::Frame => Run::Frame,
             Repeat::Band => Run::Band {
                 first_row: 0,
                 rows: 67,

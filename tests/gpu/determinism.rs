@@ -124,3 +124,42 @@ fn another_moment_gives_other_bytes() {
     let then = render_with(&mut shared, &later);
     assert!(now.layers[&LayerName::Irradiance] != then.layers[&LayerName::Irradiance]);
 }
+
+#[test]
+fn what_dispatches_bind_serves_frame_after_frame() {
+    let at = |moment_s: f64, red_w_m2: f64| {
+        scene_files::scene(json!({
+            "time_s": moment_s,
+            "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 0.8 }] },
+            "floor": { "depth_m": 2, "size_m": [4, 4] },
+            "lights": [{ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [red_w_m2, 2, 1] }],
+            "objects": [{ "mesh": "box.obj", "translation_m": [0, -1, 0], "scale": 0.5 }],
+            "camera": { "position_m": [0, 2, 2], "target_m": [0, -1.5, 0] },
+            "quality": { "water_cells": 64, "map_texels": 128, "level_map_texels": 64, "estimate_error": true },
+            "output": { "kind": "view", "width": 64, "height": 36, "format": "exr", "layers": ["radiance", "depth"] }
+        }))
+    };
+    let scenes = [at(0.0, 3.0), at(0.7, 3.0), at(0.7, 5.0), at(0.0, 3.0)];
+    let mut one = new_renderer(&RenderConfig::default());
+    let mut made = Vec::new();
+    for scene in &scenes {
+        let frame = render_with(&mut one, scene);
+        let alone = render_with(&mut new_renderer(&RenderConfig::default()), scene);
+        assert!(bits(&frame, scene).0 == bits(&alone, scene).0);
+        assert_eq!(frame.stats.energy, alone.stats.energy);
+        assert_eq!(frame.stats.accuracy, alone.stats.accuracy);
+        made.push(one.bind_groups_made());
+    }
+    // Another moment and another sun are other constants, in the same buffers.
+    assert!(made[0] > 10, "{made:?}");
+    assert_eq!(made[1..], [made[0]; 3]);
+    // Scenes in turn keep theirs, sizes of their own and all.
+    let mut other = scenes[0].clone();
+    other.scene.quality.water_cells = 48;
+    render_with(&mut one, &other);
+    let made = one.bind_groups_made();
+    for scene in [&scenes[0], &other, &scenes[1], &other] {
+        render_with(&mut one, scene);
+    }
+    assert_eq!(one.bind_groups_made(), made);
+}

@@ -72,7 +72,7 @@ fn the_estimate_is_within_a_factor_of_two() {
 
 #[test]
 fn so_it_is_where_few_cells_stand_beside_many_texels() {
-    // Texels are compared by quarters there, and the cells know little of the waves: 0.55 and 0.61 were measured.
+    // Texels are compared by quarters there, and the cells know little of the waves: 0.72 and 0.8 were measured.
     for name in ["steep_pool", "teapot_floor"] {
         let changes = [
             ("/quality/water_cells", "64"),
@@ -82,9 +82,9 @@ fn so_it_is_where_few_cells_stand_beside_many_texels() {
         let true_error = relative_l1(map.values(), rough_truth(name).as_flattened()).unwrap();
         let estimated = estimate(&map);
         println!("{name}: {true_error:.2e}, estimated {estimated:.2e}");
-        assert!((0.5..=2.0).contains(&(estimated / true_error)), "{name}");
+        assert!((0.65..=1.5).contains(&(estimated / true_error)), "{name}");
     }
-    // Texels far finer than the cells' light: 0.7.
+    // Texels far finer than the cells' light: 0.92.
     let size = [("/output/width", "1024"), ("/output/height", "1024")];
     let truth = count("sine_pool", &size, 3e-2);
     let dials = [
@@ -224,7 +224,7 @@ fn a_wanted_error_is_kept_and_not_overpaid() {
 
 #[test]
 fn a_wanted_error_that_is_large_is_kept_too() {
-    // With 64 cells these estimate about half of their true error.
+    // With 64 cells these estimate three quarters of their true error.
     for name in ["steep_pool", "teapot_floor"] {
         for target in [0.25, 0.12] {
             let wish = target.to_string();

@@ -122,3 +122,16 @@ fn a_sun_that_does_not_shine_leaves_the_floor_dark() {
         assert!(map.stats.energy.is_empty());
     }
 }
+
+#[test]
+fn the_finest_water_is_as_even_as_any() {
+    // Its vertices are more workgroups than fit one row of a dispatch.
+    let resolved = scene_files::scene(json!({
+        "water": { "absorption_per_m": [0.35, 0.07, 0.03] },
+        "floor": { "depth_m": 2, "size_m": [8, 8] },
+        "lights": [{ "kind": "sun", "elevation_deg": 60, "azimuth_deg": 37, "irradiance_w_m2": [1000, 800, 600] }],
+        "quality": { "water_cells": 2048 },
+        "output": { "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 64, "height": 48 }
+    }));
+    assert_flat(&resolved, "2048 cells");
+}
