@@ -75,12 +75,9 @@ impl Renderer {
         // A look near enough to foretell from.
         let look = (cells / 2).max(ladder::FEWEST_CELLS);
         let error = self.look(resolved, look, cancel)?.unwrap_or(0.0);
-        let predicted = choose::foretold(
-            error * self.calibration.error_margin,
-            look,
-            cells,
-            resolved.scene.output.is_view(),
-        );
+        let is_view = resolved.scene.output.is_view();
+        let margin = choose::margin(self.calibration.error_margin, is_view);
+        let predicted = choose::foretold(error * margin, look, cells, is_view);
         let reason = if meets {
             format!("the most cells that are predicted to take at most {budget_ms} ms")
         } else {
