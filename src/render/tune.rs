@@ -35,10 +35,11 @@ impl Renderer {
         target: f64,
         cancel: &CancellationToken,
     ) -> Result<ChosenDials, RenderError> {
+        let is_view = resolved.scene.output.is_view();
         let prospect = Prospect {
             most_cells: self.most_cells(resolved)?,
-            margin: self.calibration.error_margin,
-            is_view: resolved.scene.output.is_view(),
+            margin: choose::margin(self.calibration.error_margin, is_view),
+            is_view,
         };
         let choice = choose::for_error(target, &prospect, |cells| {
             self.look(resolved, cells, cancel)

@@ -44,7 +44,7 @@ pub struct Choice {
 pub struct Prospect {
     /// Most cells that fit the memory.
     pub most_cells: u32,
-    /// How much larger than its estimate a map's true error may be, 1 …
+    /// How much larger than its estimate a true error may be, 1 …: see [`margin`].
     pub margin: f64,
     /// Whether a camera looks at the map: how fast its error falls is then measured, from look to look. A map's own texels fall
     /// with the square of the cells, which is known.
@@ -86,11 +86,10 @@ pub fn for_error<E>(
         MAP_ORDER
     };
     let mut before: Option<(u32, f64)> = None;
-    let margin = margin(prospect.margin, prospect.is_view);
     let mut looks = 0;
     loop {
         looks += 1;
-        let Some(error) = look(cells)?.map(|error| error * margin) else {
+        let Some(error) = look(cells)?.map(|error| error * prospect.margin) else {
             return Ok(Choice {
                 cells: FEWEST_CELLS,
                 predicted_error: 0.0,

@@ -110,7 +110,7 @@ fn coarse_looks_that_see_too_little_of_their_error_are_not_believed() {
     ] {
         for target in targets {
             let prospect = Prospect {
-                margin: 1.2,
+                margin: choose::margin(1.2, is_view),
                 is_view,
                 ..map(2048)
             };
