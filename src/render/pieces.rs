@@ -11,8 +11,9 @@ use crate::gpu::readback;
 use crate::passes::desc::{Groups, Step, Work};
 use crate::passes::slot::Slot;
 
-/// Workgroups that run in one go, and first piece of a larger dispatch: about what the largest GPUs hold at once.
-const FIRST_GROUPS: u64 = 4096;
+/// Workgroups that run in one go, and first piece of a larger dispatch: about what the largest GPUs hold at once (132 multiprocessors with 32
+/// each), and as many as the vertices of 512 water cells need.
+const FIRST_GROUPS: u64 = 4224;
 /// The same of a dispatch that empties a queue: there a workgroup may have all texels of the maps to itself.
 const FIRST_QUEUE_GROUPS: u64 = 256;
 /// Words of a queue or of the flux sums up to which queues are emptied in one go: how many workgroups that takes only the GPU

@@ -1,5 +1,6 @@
 //! Flat water against its closed form, E cos θ_i T(θ_i) e^(−c d), at every texel.
 
+use caustica::config::RenderConfig;
 use caustica::reference::closed_form::flat_water_irradiance;
 use caustica::scene::{LayerName, Light, ResolvedScene};
 use serde_json::json;
@@ -134,4 +135,20 @@ fn the_finest_water_is_as_even_as_any() {
         "output": { "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 64, "height": 48 }
     }));
     assert_flat(&resolved, "2048 cells");
+}
+
+#[test]
+fn a_grid_of_512_cells_runs_in_one_go_and_a_larger_one_in_pieces() {
+    let mut renderer = harness::new_renderer(&RenderConfig::default());
+    for (cells, in_pieces) in [(512, false), (1024, true)] {
+        let resolved = scene_files::scene(json!({
+            "floor": { "depth_m": 2, "size_m": [8, 8] },
+            "lights": [{ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [1, 1, 1] }],
+            "quality": { "water_cells": cells, "estimate_error": true },
+            "output": { "kind": "irradiance_map", "receiver": "floor", "width": 64, "height": 64 }
+        }));
+        let (before, _) = renderer.pieces();
+        harness::render_with(&mut renderer, &resolved);
+        assert_eq!(renderer.pieces().0 > before, in_pieces, "{cells} cells");
+    }
 }
