@@ -1,5 +1,6 @@
 //! Opens an adapter by policy and keeps what goes wrong on its device.
 
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -89,11 +90,21 @@ impl GpuContext {
     /// WGSL as this adapter runs it best. A CPU driver gets uniforms as read-only storage: lavapipe 22.3 makes a shader of its
     /// own for every dispatch of a uniform that decides a branch or a loop, and keeps it (seen: 0.8 MiB and 5 ms per frame of
     /// six passes). GPUs keep uniforms, and with them WebGPU's limit of eight storage buffers.
-    pub fn adapt(&self, text: String) -> String {
+    pub fn adapt<'a>(&self, text: &'a str) -> Cow<'a, str> {
+        match self.uniforms_as() {
+            wgpu::BufferBindingType::Uniform => text.into(),
+            wgpu::BufferBindingType::Storage { .. } => {
+                text.replace("var<uniform>", "var<storage, read>").into()
+            }
+        }
+    }
+
+    /// What a uniform is bound as: see [`Self::adapt`].
+    pub(super) fn uniforms_as(&self) -> wgpu::BufferBindingType {
         if self.adapter.software {
-            text.replace("var<uniform>", "var<storage, read>")
+            wgpu::BufferBindingType::Storage { read_only: true }
         } else {
-            text
+            wgpu::BufferBindingType::Uniform
         }
     }
 

@@ -1,88 +1,8 @@
 //! Pipelines whose bindings are matched by name: the WGSL variable's name is the only place where a binding is named.
 
-use std::collections::BTreeMap;
-
-use super::pool::KEEP_FRAMES;
+use super::bind_groups::{BindGroups, Binding, Bound};
 use super::shader::{Access, Module, Reflected, ShaderSources};
-use super::uniforms::Placed;
 use super::{GpuContext, GpuError};
-
-/// Something to bind.
-#[derive(Clone, Copy, Debug)]
-pub enum Binding<'a> {
-    /// A whole buffer.
-    Buffer(&'a wgpu::Buffer),
-    /// Constants, for a `var<uniform>`.
-    Uniform(&'a Placed),
-    /// A texture.
-    Texture(&'a wgpu::TextureView),
-}
-
-/// What an entry point reads and writes, ready to be set at group 0.
-#[derive(Clone, Debug)]
-pub struct Bound {
-    /// The group.
-    pub group: wgpu::BindGroup,
-    /// Where its uniforms begin, in the order of their bindings.
-    pub offsets: Vec<u32>,
-}
-
-/// Bind groups by what they bind, kept from frame to frame as long as the [pool](super::BufferPool) keeps buffers: making one takes a
-/// frame's host as long as all the rest of a dispatch. They keep their buffers alive, so whoever drops buffers earlier
-/// [clears](Self::clear) them.
-#[derive(Debug, Default)]
-pub struct BindGroups {
-    kept: BTreeMap<(wgpu::BindGroupLayout, Vec<wgpu::Buffer>), KeptGroup>,
-    frame: u64,
-    made: u64,
-}
-
-#[derive(Debug)]
-struct KeptGroup {
-    group: wgpu::BindGroup,
-    last_used: u64,
-}
-
-impl BindGroups {
-    /// Starts a frame: what was not used for some frames is dropped, no later than the buffers it binds.
-    pub fn begin_frame(&mut self) {
-        self.frame += 1;
-        let frame = self.frame;
-        self.kept
-            .retain(|_, kept| kept.last_used + KEEP_FRAMES >= frame);
-    }
-
-    /// Drops all of them.
-    pub fn clear(&mut self) {
-        self.kept.clear();
-    }
-
-    /// How many were made since the start.
-    pub fn made(&self) -> u64 {
-        self.made
-    }
-
-    fn get(
-        &mut self,
-        layout: &wgpu::BindGroupLayout,
-        buffers: Vec<wgpu::Buffer>,
-        make: impl FnOnce() -> wgpu::BindGroup,
-    ) -> wgpu::BindGroup {
-        let made = &mut self.made;
-        let kept = self
-            .kept
-            .entry((layout.clone(), buffers))
-            .or_insert_with(|| {
-                *made += 1;
-                KeptGroup {
-                    group: make(),
-                    last_used: 0,
-                }
-            });
-        kept.last_used = self.frame;
-        kept.group.clone()
-    }
-}
 
 /// A compute entry point, ready to run.
 #[derive(Debug)]
@@ -131,12 +51,11 @@ impl Kernel {
         entry: &str,
         constants: &[(&'static str, f64)],
     ) -> Result<Self, GpuError> {
-        let uniforms = uniforms_of(&text);
-        let module = Module::parse(path, gpu.adapt(text))?;
+        let module = Module::parse(path, text)?;
         let layout = BoundLayout::new(
             gpu,
             path,
-            (module.bindings(path, entry)?, &uniforms),
+            module.bindings(path, entry)?,
             wgpu::ShaderStages::COMPUTE,
         );
         let shader = shader_module(gpu, path, &module);
@@ -174,7 +93,7 @@ impl Kernel {
     /// What `find` returns for each variable's name, bound; with a group of `groups` where that holds no textures.
     ///
     /// # Errors
-    /// Where `find` has nothing for a variable, or a uniform for what is none, or none for one.
+    /// Where `find` has nothing for a variable, or not what it is.
     pub fn bind<'a>(
         &self,
         gpu: &GpuContext,
@@ -218,9 +137,7 @@ impl RasterKernel {
         (vertex, fragment): (&str, &str),
         targets: &RasterTargets<'_>,
     ) -> Result<Self, GpuError> {
-        let text = sources.assemble(path)?;
-        let uniforms = uniforms_of(&text);
-        let module = Module::parse(path, gpu.adapt(text))?;
+        let module = Module::parse(path, sources.assemble(path)?)?;
         let mut bindings = module.bindings(path, vertex)?;
         for found in module.bindings(path, fragment)? {
             if !bindings.contains(&found) {
@@ -229,7 +146,7 @@ impl RasterKernel {
         }
         bindings.sort_by_key(|b| b.binding);
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let layout = BoundLayout::new(gpu, path, (bindings, &uniforms), stages);
+        let layout = BoundLayout::new(gpu, path, bindings, stages);
         let shader = shader_module(gpu, path, &module);
         let colors: Vec<Option<wgpu::ColorTargetState>> = targets
             .colors
@@ -276,7 +193,7 @@ impl RasterKernel {
     /// What `find` returns for each variable's name, bound; with a group of `groups` where that holds no textures.
     ///
     /// # Errors
-    /// Where `find` has nothing for a variable, or a uniform for what is none, or none for one.
+    /// Where `find` has nothing for a variable, or not what it is.
     pub fn bind<'a>(
         &self,
         gpu: &GpuContext,
@@ -296,22 +213,13 @@ fn shader_module(gpu: &GpuContext, path: &str, module: &Module) -> wgpu::ShaderM
     gpu.device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(path),
-            source: wgpu::ShaderSource::Wgsl(module.text.as_str().into()),
+            source: wgpu::ShaderSource::Wgsl(gpu.adapt(&module.text)),
         })
-}
-
-/// The names of a shader's uniforms, whatever an adapter [takes them for](GpuContext::adapt).
-fn uniforms_of(text: &str) -> Vec<String> {
-    let declared = text.split("var<uniform>").skip(1);
-    let names = declared.filter_map(|rest| rest.split_once(':'));
-    names.map(|(name, _)| name.trim().to_owned()).collect()
 }
 
 #[derive(Debug)]
 struct BoundLayout {
     bindings: Vec<Reflected>,
-    /// Of each binding, whether it is a uniform.
-    are_uniforms: Vec<bool>,
     layout: wgpu::BindGroupLayout,
 }
 
@@ -319,20 +227,15 @@ impl BoundLayout {
     fn new(
         gpu: &GpuContext,
         path: &str,
-        (bindings, uniforms): (Vec<Reflected>, &[String]),
+        bindings: Vec<Reflected>,
         stages: wgpu::ShaderStages,
     ) -> Self {
-        let are_uniforms: Vec<bool> = bindings
-            .iter()
-            .map(|b| uniforms.contains(&b.name))
-            .collect();
         let entries: Vec<wgpu::BindGroupLayoutEntry> = bindings
             .iter()
-            .zip(&are_uniforms)
-            .map(|(b, &is_uniform)| wgpu::BindGroupLayoutEntry {
+            .map(|b| wgpu::BindGroupLayoutEntry {
                 binding: b.binding,
                 visibility: stages,
-                ty: binding_type(b.access, is_uniform),
+                ty: binding_type(gpu, b.access),
                 count: None,
             })
             .collect();
@@ -342,11 +245,7 @@ impl BoundLayout {
                 label: Some(path),
                 entries: &entries,
             });
-        Self {
-            bindings,
-            are_uniforms,
-            layout,
-        }
+        Self { bindings, layout }
     }
 
     fn pipeline_layout(&self, gpu: &GpuContext, label: &str) -> wgpu::PipelineLayout {
@@ -369,33 +268,37 @@ impl BoundLayout {
             shader: name.to_owned(),
             message,
         };
-        let mut found = Vec::with_capacity(self.bindings.len());
+        let mut entries = Vec::with_capacity(self.bindings.len());
         let (mut buffers, mut offsets) = (Vec::with_capacity(self.bindings.len()), Vec::new());
-        for (b, &is_uniform) in self.bindings.iter().zip(&self.are_uniforms) {
-            let binding = find(&b.name)
+        for b in &self.bindings {
+            let found = find(&b.name)
                 .ok_or_else(|| fault(format!("nothing is there to bind to `{}`", b.name)))?;
-            if matches!(binding, Binding::Uniform(_)) != is_uniform {
-                return Err(fault(format!("`{}` is bound to what it is not", b.name)));
-            }
-            match binding {
-                Binding::Buffer(buffer) => buffers.push(buffer.clone()),
-                Binding::Uniform(placed) => {
+            let resource = match (found, b.access) {
+                (Binding::Buffer(buffer), Access::StorageRead | Access::StorageWrite) => {
+                    buffers.push(buffer.clone());
+                    buffer.as_entire_binding()
+                }
+                (Binding::Uniform(placed), Access::Uniform(bytes)) => {
                     buffers.push(placed.buffer.clone());
                     offsets.push(placed.offset);
+                    wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                        buffer: &placed.buffer,
+                        // Where in the buffer is said when it is set.
+                        offset: 0,
+                        size: wgpu::BufferSize::new(u64::from(bytes)),
+                    })
                 }
-                Binding::Texture(_) => {}
-            }
-            found.push(binding);
+                (Binding::Texture(view), Access::Texture(_)) => {
+                    wgpu::BindingResource::TextureView(view)
+                }
+                _ => return Err(fault(format!("`{}` is bound to what it is not", b.name))),
+            };
+            entries.push(wgpu::BindGroupEntry {
+                binding: b.binding,
+                resource,
+            });
         }
         let make = || {
-            let entries: Vec<wgpu::BindGroupEntry> = found
-                .iter()
-                .zip(&self.bindings)
-                .map(|(found, b)| wgpu::BindGroupEntry {
-                    binding: b.binding,
-                    resource: resource(found),
-                })
-                .collect();
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(name),
                 layout: &self.layout,
@@ -412,29 +315,17 @@ impl BoundLayout {
     }
 }
 
-fn resource<'a>(binding: &Binding<'a>) -> wgpu::BindingResource<'a> {
-    match *binding {
-        Binding::Buffer(buffer) => buffer.as_entire_binding(),
-        // Where in the buffer is said when it is set. The size is the variable's, so it is the same whenever the group serves.
-        Binding::Uniform(placed) => wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &placed.buffer,
-            offset: 0,
-            size: wgpu::BufferSize::new(placed.bytes),
-        }),
-        Binding::Texture(view) => wgpu::BindingResource::TextureView(view),
-    }
-}
-
-fn binding_type(access: Access, is_uniform: bool) -> wgpu::BindingType {
-    let buffer = |ty| wgpu::BindingType::Buffer {
+fn binding_type(gpu: &GpuContext, access: Access) -> wgpu::BindingType {
+    let buffer = |ty, has_dynamic_offset| wgpu::BindingType::Buffer {
         ty,
-        has_dynamic_offset: is_uniform,
+        has_dynamic_offset,
         min_binding_size: None,
     };
+    let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
     match access {
-        Access::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
-        Access::StorageRead => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
-        Access::StorageWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+        Access::Uniform(_) => buffer(gpu.uniforms_as(), true),
+        Access::StorageRead => buffer(storage(true), false),
+        Access::StorageWrite => buffer(storage(false), false),
         Access::Texture(unsigned) => wgpu::BindingType::Texture {
             sample_type: if unsigned {
                 wgpu::TextureSampleType::Uint

@@ -1,5 +1,6 @@
 //! The GPU: one context, assembled and reflected shaders, pooled buffers, timing, readback. Knows nothing of water.
 
+pub mod bind_groups;
 pub mod context;
 pub mod kernel;
 pub mod pieces;
@@ -9,8 +10,9 @@ pub mod shader;
 pub mod timing;
 pub mod uniforms;
 
+pub use bind_groups::{BindGroups, Binding};
 pub use context::GpuContext;
-pub use kernel::{BindGroups, Binding, Kernel, RasterKernel};
+pub use kernel::{Kernel, RasterKernel};
 pub use pool::BufferPool;
 
 /// What can go wrong on the GPU.

@@ -18,8 +18,6 @@ pub struct Placed {
     pub buffer: wgpu::Buffer,
     /// Where they begin in it.
     pub offset: u32,
-    /// How many bytes they are.
-    pub bytes: u64,
 }
 
 /// Constants by what they are, kept for some frames. There are no more buffers than the frames since the start (or since the last idleness)
@@ -45,10 +43,10 @@ impl Uniforms {
     pub fn begin_frame(&mut self) {
         self.frame += 1;
         let (frame, free) = (self.frame, &mut self.free);
-        self.kept.retain(|_, KeptPlace { placed, last_used }| {
+        self.kept.retain(|bytes, KeptPlace { placed, last_used }| {
             let stays = *last_used + KEEP_FRAMES >= frame;
             if !stays {
-                let places = free.entry(room(placed.bytes)).or_default();
+                let places = free.entry(room(bytes)).or_default();
                 places.push((placed.buffer.clone(), placed.offset));
             }
             stays
@@ -61,13 +59,9 @@ impl Uniforms {
             kept.last_used = self.frame;
             return kept.placed.clone();
         }
-        let (buffer, offset) = self.place(gpu, room(bytes.len() as u64));
+        let (buffer, offset) = self.place(gpu, room(bytes));
         gpu.queue.write_buffer(&buffer, u64::from(offset), bytes);
-        let placed = Placed {
-            buffer,
-            offset,
-            bytes: bytes.len() as u64,
-        };
+        let placed = Placed { buffer, offset };
         let kept = KeptPlace {
             placed: placed.clone(),
             last_used: self.frame,
@@ -98,6 +92,6 @@ impl Uniforms {
     }
 }
 
-fn room(bytes: u64) -> u64 {
-    bytes.next_multiple_of(ALIGNMENT)
+fn room(bytes: &[u8]) -> u64 {
+    (bytes.len() as u64).next_multiple_of(ALIGNMENT)
 }

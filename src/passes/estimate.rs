@@ -200,8 +200,8 @@ pub fn coarse_floor_map(facts: &SceneFacts) -> Option<FloorMap> {
 
 impl SceneFacts {
     /// The same scene for a light that is done coarsely: with [fewer water cells](coarse_cells) and a [smaller map of the
-    /// floor](coarse_floor_map). So it is a ninth to a sixth of the cells' work, but of the texels' a sixteenth or a quarter, and all of it of meshes'
-    /// maps and where the floor's do not divide.
+    /// floor](coarse_floor_map). So it is a ninth to a sixth of the cells' work, but of the texels' a sixteenth or a quarter, and all of it
+    /// of meshes' maps and where the floor's do not divide.
     ///
     /// Beams that straddle receivers are halved once less.
     #[must_use]
