@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use caustica::hard_cases;
+use caustica::lab::hard_cases;
 use serde_json::Value;
 
 /// Larger seeds make every try slow.

@@ -59,16 +59,17 @@
 //! Arrows go down: http, cli → jobs → render → {plan, passes, gpu, level_map} → {scene, physics, waves, mesh}.
 
 pub mod accuracy;
+pub mod assets;
+pub mod cache;
 pub mod cli;
 pub mod config;
-pub mod experiment;
+pub mod facts;
 pub mod frame;
 pub mod gpu;
-pub mod hard_cases;
+pub mod gpu_queue;
 pub mod http;
 pub mod image;
-pub mod jobs;
-pub mod level_map;
+pub mod lab;
 pub mod mesh;
 pub mod passes;
 pub mod physics;

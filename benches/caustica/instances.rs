@@ -2,8 +2,8 @@
 
 use std::error::Error;
 
+use caustica::assets::MeshStore;
 use caustica::config::{Limits, RenderConfig};
-use caustica::mesh::MeshStore;
 use caustica::passes::shaders;
 use caustica::render::Renderer;
 use caustica::scene::{ResolvedScene, Scene, resolve};

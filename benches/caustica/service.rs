@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use caustica::config::{Limits, RenderConfig};
+use caustica::gpu_queue::{GpuQueue, GpuState, QueueSettings, RenderBackend};
 use caustica::http::{AppState, serve_on};
-use caustica::jobs::{GpuQueue, GpuState, QueueSettings, RenderBackend};
 use caustica::render::Renderer;
 use serde_json::{Value, json};
 use tokio::net::TcpListener;

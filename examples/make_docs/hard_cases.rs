@@ -4,7 +4,7 @@ use std::error::Error;
 
 use caustica::cli::hard_cases::{HardCasesArgs, run};
 use caustica::config::RenderConfig;
-use caustica::hard_cases::Settings;
+use caustica::lab::hard_cases::Settings;
 
 /// What the page is called on the command line.
 pub(crate) const NAME: &str = "hard_cases";

@@ -5,11 +5,11 @@ use std::error::Error;
 use std::fmt::Write as _;
 
 use caustica::accuracy::metrics::relative_l1;
-use caustica::accuracy::words::{mib, ms, percent};
 use caustica::cli::scene_file;
 use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
 use caustica::config::Limits;
 use caustica::frame::Frame;
+use caustica::lab::study::words::{mib, ms, percent};
 use caustica::reference::{TruthSettings, truth};
 use caustica::render::Renderer;
 use caustica::scene::{LayerName, ResolvedScene};
@@ -111,7 +111,7 @@ pub(crate) fn chapter(renderer: &RefCell<Renderer>) -> Result<String, Box<dyn Er
             let right: Vec<f64> = of().flat_map(|at| truth.irradiance[at]).collect();
             Ok(relative_l1(&seen, &right)?)
         };
-        let facts = caustica::scene::facts::SceneFacts::of(scene)?;
+        let facts = caustica::facts::SceneFacts::of(scene)?;
         let maps = caustica::plan::level_maps(&facts);
         let memory = &frame.stats.memory;
         let _ = writeln!(

@@ -5,8 +5,8 @@ use std::error::Error;
 use std::path::Path;
 
 use caustica::config::RenderConfig;
-use caustica::experiment::{self, Experiment, FEATURED, Settings};
-use caustica::mesh::shapes;
+use caustica::lab::experiment::{self, Experiment, FEATURED, Settings};
+use caustica::lab::shapes;
 use caustica::reference::{TruthSettings, truth};
 use caustica::render::Renderer;
 use tokio_util::sync::CancellationToken;

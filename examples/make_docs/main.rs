@@ -16,9 +16,9 @@ mod wishes;
 use std::error::Error;
 use std::path::Path;
 
-use caustica::accuracy::report::write_study;
-use caustica::accuracy::sweep::{Refusal, SweepSettings, run_study};
 use caustica::config::{Limits, RenderConfig};
+use caustica::lab::study::report::write_study;
+use caustica::lab::study::sweep::{Refusal, SweepSettings, run_study};
 use caustica::reference::{TruthSettings, truth};
 use caustica::render::{RenderError, Renderer};
 use tokio_util::sync::CancellationToken;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use caustica::accuracy::order::level_number;
-use caustica::accuracy::report::conclusions;
-use caustica::accuracy::study::{Point, Study};
-use caustica::accuracy::words::{percent, significant};
+use caustica::lab::study::order::level_number;
+use caustica::lab::study::report::conclusions;
+use caustica::lab::study::study::{Point, Study};
+use caustica::lab::study::words::{percent, significant};
 use caustica::scene::{Output, Quality};
 use caustica::tuning::ladder;
 

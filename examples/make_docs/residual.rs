@@ -7,16 +7,16 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use caustica::accuracy::error_images::error_images;
-use caustica::accuracy::study::{
-    CostFigures, ErrorFigures, LinearImage, Point, SpreadMs, Study, StudyImages, Sweep,
-    TruthFigures,
+use caustica::accuracy::LinearImage;
+use caustica::facts::SceneFacts;
+use caustica::lab::experiment::{Way, scene};
+use caustica::lab::study::error_images::error_images;
+use caustica::lab::study::study::{
+    CostFigures, ErrorFigures, Point, SpreadMs, Study, StudyImages, Sweep, TruthFigures,
 };
-use caustica::accuracy::words::{percent, signed_percent};
-use caustica::experiment::{Way, scene};
+use caustica::lab::study::words::{percent, signed_percent};
 use caustica::reference::{Truth, TruthSettings, truth};
 use caustica::render::Renderer;
-use caustica::scene::facts::SceneFacts;
 use caustica::scene::{LayerName, ResolvedScene, Wave};
 use serde_json::json;
 use tokio_util::sync::CancellationToken;

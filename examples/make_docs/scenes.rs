@@ -2,10 +2,10 @@
 
 use std::error::Error;
 
-use caustica::accuracy::dial::{Dial, DialError};
 use caustica::cli::scene_file;
 use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
 use caustica::config::Limits;
+use caustica::lab::study::dial::{Dial, DialError};
 use caustica::scene::ResolvedScene;
 
 /// A scene and how well its truth has to be known.

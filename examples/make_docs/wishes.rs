@@ -2,9 +2,9 @@
 
 use std::error::Error;
 
-use caustica::accuracy::dial::Dial;
-use caustica::accuracy::sweep::{Refusal, SweepSettings, run_study};
 use caustica::config::Limits;
+use caustica::lab::study::dial::Dial;
+use caustica::lab::study::sweep::{Refusal, SweepSettings, run_study};
 use caustica::reference::Truth;
 use caustica::render::Renderer;
 use caustica::scene::ResolvedScene;

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use caustica::config::RenderConfig;
 use caustica::gpu::shader::ShaderSources;
-use caustica::hard_cases::{self, Case, Family, Settings, Truths};
+use caustica::lab::hard_cases::{self, Case, Family, Settings, Truths};
 use caustica::passes::shaders;
 use caustica::render::Renderer;
 

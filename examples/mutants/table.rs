@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use caustica::hard_cases::{Case, Family};
+use caustica::lab::hard_cases::{Case, Family};
 
 use super::plants::Plant;
 use super::shader_plants::ShaderPlant;

@@ -3,9 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use caustica::config::Limits;
+use caustica::facts::SceneFacts;
 use caustica::mesh::{Mesh, obj};
 use caustica::plan::{self, NothingCached, WarmCache};
-use caustica::scene::facts::SceneFacts;
 use caustica::scene::{Scene, SceneError, resolve};
 
 /// The mesh of every object: a tetrahedron.

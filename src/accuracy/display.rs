@@ -5,12 +5,22 @@
 //! both pictures is invisible here; the linear metrics see it.
 
 use super::metrics::MetricError;
-use super::study::LinearImage;
 use crate::image::tone::{code, srgb_from_linear};
 
 /// Irradiance shown as white, as a multiple of that of a dry horizontal surface. Two: open water then lies at middle
 /// brightness, and a caustic may be twice as bright as dry land before it is cut.
 pub const SHOWN_WHITE: f64 = 2.0;
+
+/// Linear irradiance by texel or pixel, row 0 at min z (maps) or at the top (views).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LinearImage {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Linear RGB, W/m²; 0 where nothing is compared.
+    pub rgb: Vec<[f64; 3]>,
+}
 
 /// Linear display light, 0 … 1 per channel, pixel by pixel.
 ///
@@ -48,7 +58,7 @@ pub fn display_rgb(image: &LinearImage, white_w_m2: f64) -> Result<Vec<[u8; 3]>,
 }
 
 /// Refuses a picture whose pixels do not fill its frame.
-pub(super) fn check_shape(
+pub(crate) fn check_shape(
     which: &'static str,
     pixels: usize,
     width: u32,

@@ -9,8 +9,8 @@ use super::error::CliError;
 use super::files;
 use super::progress::Progress;
 use crate::config::RenderConfig;
+use crate::lab::calibrate::{self, MeasureError};
 use crate::render::Renderer;
-use crate::tuning::measure::{self, MeasureError};
 
 /// Where the calibration goes.
 #[derive(Clone, Debug, Args)]
@@ -29,7 +29,7 @@ pub fn run(args: &CalibrateArgs, config: &RenderConfig) -> Result<(), CliError> 
     files::check_place(&args.output)?;
     let mut renderer = Renderer::new(config)?;
     let progress = Progress::new();
-    let calibration = measure::calibration(
+    let calibration = calibrate::calibration(
         &mut |scene| renderer.render(scene, &CancellationToken::new()),
         &|what, part| {
             progress.say(what);

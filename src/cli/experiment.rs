@@ -10,8 +10,8 @@ use super::accuracy::cache_folder;
 use super::error::CliError;
 use super::progress::bar;
 use crate::config::RenderConfig;
-use crate::experiment::{self, ExperimentError, Settings};
-use crate::mesh::shapes;
+use crate::lab::experiment::{self, ExperimentError, Settings};
+use crate::lab::shapes;
 use crate::reference::{TruthSettings, truth};
 use crate::render::Renderer;
 

@@ -9,7 +9,7 @@ use super::files;
 use super::progress::bar;
 use super::summary::{adapter, columns};
 use crate::config::RenderConfig;
-use crate::hard_cases::{self, Case, Outcome, Settings, Truths, page};
+use crate::lab::hard_cases::{self, Case, Outcome, Settings, Truths, page};
 use crate::render::Renderer;
 
 /// Which cases, and where to.

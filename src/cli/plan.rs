@@ -11,10 +11,10 @@ use super::scene_flags::SceneArgs;
 use super::summary::{bytes, columns, predicted};
 use super::{files, scene_file};
 use crate::config::{Limits, RenderConfig};
+use crate::facts::SceneFacts;
 use crate::plan::Plan;
 use crate::plan::{NothingCached, plan_scene};
 use crate::render::{RenderError, Renderer};
-use crate::scene::facts::SceneFacts;
 use crate::stats::ChosenDials;
 
 /// What to plan.

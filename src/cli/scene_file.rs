@@ -7,8 +7,8 @@ use std::path::{Component, Path};
 
 use super::error::CliError;
 use super::scene_flags::SceneArgs;
+use crate::assets::MeshStore;
 use crate::config::Limits;
-use crate::mesh::MeshStore;
 use crate::scene::parse::read_json;
 use crate::scene::{ImageFormat, Issue, ResolvedScene, Scene, SceneError, overrides, resolve};
 

@@ -11,8 +11,8 @@ use utoipa::ToSchema;
 
 use super::problem::Problem;
 use crate::gpu::GpuError;
+use crate::gpu_queue::JobError;
 use crate::image::EncodeError;
-use crate::jobs::JobError;
 use crate::mesh::MeshError;
 use crate::render::RenderError;
 use crate::scene::{Issue, IssueKind, SceneError};

@@ -89,7 +89,7 @@ pub(super) async fn run_blocking<T: Send + 'static>(
         Ok(result) => result,
         Err(error) => Err(match error.try_into_panic() {
             Ok(panic) => ApiError::from_panic(&*panic),
-            Err(_) => crate::jobs::JobError::Cancelled.into(),
+            Err(_) => crate::gpu_queue::JobError::Cancelled.into(),
         }),
     }
 }

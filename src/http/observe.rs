@@ -11,7 +11,7 @@ use tracing::Instrument;
 use super::error::{ApiError, Reason};
 use super::metrics::Metrics;
 use super::state::AppState;
-use crate::jobs::JobError;
+use crate::gpu_queue::JobError;
 
 /// Header that carries the request's id, taken from the client or made up.
 pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");

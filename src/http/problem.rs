@@ -7,7 +7,7 @@ use utoipa::openapi::{ContentBuilder, Header, Ref, RefOr, Response, ResponseBuil
 use utoipa::{IntoResponses, PartialSchema as _, ToSchema};
 
 use super::error::{ApiError, ProblemKind, Reason};
-use crate::jobs::JobError;
+use crate::gpu_queue::JobError;
 use crate::mesh::MeshError;
 use crate::render::RenderError;
 use crate::scene::Issue;

@@ -12,7 +12,7 @@ use super::router::app;
 use super::state::AppState;
 use crate::config::{Limits, RenderConfig, ServeConfig};
 use crate::gpu::GpuError;
-use crate::jobs::{GpuQueue, GpuState, GpuStatus, QueueSettings, RenderBackend};
+use crate::gpu_queue::{GpuQueue, GpuState, GpuStatus, QueueSettings, RenderBackend};
 use crate::render::Renderer;
 
 /// How much longer than a request's deadline connections are waited for on shutdown.

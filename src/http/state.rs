@@ -8,9 +8,9 @@ use tokio::sync::Semaphore;
 
 use super::error::ApiError;
 use super::metrics::Metrics;
+use crate::assets::MeshStore;
 use crate::config::{Limits, RenderConfig};
-use crate::jobs::GpuQueue;
-use crate::mesh::MeshStore;
+use crate::gpu_queue::GpuQueue;
 
 /// What the routes share; clones are handles on the same thing.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use utoipa::IntoParams;
 
 use super::error::ApiError;
 use super::state::AppState;
-use crate::level_map::{WarmSun, WarmUp};
+use crate::cache::{WarmSun, WarmUp};
 use crate::scene::ranges::{ELEVATION, IOR, Integer, Layers, LevelMapTexels, TURNING_ANGLE};
 use crate::scene::{Issue, Quality, Water};
 

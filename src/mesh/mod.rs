@@ -1,6 +1,5 @@
 //! Meshes: OBJ and MTL in (`obj`, with `scan`, `mtl` and `text` that check the texts first), what was mended (`repair`), why one was
-//! refused (`error`), a ray hierarchy over the triangles (`hierarchy`), the store (`store`) and what it tells (`info`); and a catalogue
-//! of meshes from formulas (`shapes`).
+//! refused (`error`), a ray hierarchy over the triangles (`hierarchy`), and a description of each mesh (`info`).
 
 mod error;
 pub mod hierarchy;
@@ -9,8 +8,6 @@ pub(crate) mod mtl;
 pub mod obj;
 pub(crate) mod repair;
 mod scan;
-pub mod shapes;
-pub mod store;
 mod text;
 
 use glam::{DVec3, Vec3};
@@ -22,7 +19,6 @@ pub use hierarchy::HierarchyNode;
 pub use info::{MeshBounds, MeshInfo};
 pub use mtl::DEFAULT_ALBEDO;
 pub use scan::MAX_COORDINATE_M;
-pub use store::{Inserted, MeshStore};
 
 /// A triangle mesh, immutable after reading.
 #[derive(Clone, Debug)]

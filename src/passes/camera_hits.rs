@@ -3,7 +3,7 @@
 use super::desc::{Groups, PassDesc, Repeat, Run, Step, Work};
 use super::gpu_data::{View, vec2, vec4};
 use super::slot::Slot;
-use crate::scene::facts::SceneFacts;
+use crate::facts::SceneFacts;
 
 /// What a sample of a pixel whose march along the water ended early adds to its notes (the fourth value of its radiance); one that sees
 /// the floor beside its map adds 1.

@@ -4,8 +4,8 @@ use super::camera_hits::{pixel_step, wanted_for_camera};
 use super::desc::{PassDesc, Repeat};
 use super::gpu_data::{AirLight, vec4};
 use super::slot::Slot;
-use crate::scene::facts::{MOST_LIGHTS, SceneFacts};
-use crate::scene::source::Source;
+use crate::facts::source::Source;
+use crate::facts::{MOST_LIGHTS, SceneFacts};
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {

@@ -1,8 +1,8 @@
 //! What a pass is.
 
 use super::slot::Slot;
-use crate::scene::facts::SceneFacts;
-use crate::scene::placement::LevelBox;
+use crate::facts::SceneFacts;
+use crate::facts::placement::LevelBox;
 
 /// How often a pass runs in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

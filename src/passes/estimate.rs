@@ -6,8 +6,8 @@ use super::gpu_data::{Comparison, Estimate};
 use super::maps::MapLayout;
 use super::slot::{self, Slot};
 use super::surface::wanted_for_light;
+use crate::facts::{FloorMap, SceneFacts};
 use crate::scene::Receiver;
-use crate::scene::facts::{FloorMap, SceneFacts};
 
 /// Places (texels or blocks of them) of a workgroup, as in the shader.
 pub const PLACES_PER_GROUP: u32 = 64 * 2;

@@ -6,8 +6,8 @@ use super::light::{light_uniform, receivers};
 use super::maps::MapLayout;
 use super::slot::{self, Slot};
 use super::surface::wanted_for_light;
+use crate::facts::SceneFacts;
 use crate::scene::Receiver;
-use crate::scene::facts::SceneFacts;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {

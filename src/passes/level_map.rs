@@ -4,8 +4,8 @@
 use super::desc::{PassDesc, Repeat, Run, Step, Surface, Work};
 use super::gpu_data::{LevelMapView, vec4};
 use super::slot::Slot;
-use crate::scene::facts::SceneFacts;
-use crate::scene::placement::LevelBox;
+use crate::facts::SceneFacts;
+use crate::facts::placement::LevelBox;
 
 /// Depth a level map is cleared to where there is nothing, as in the shaders.
 pub const EMPTY_DEPTH: f64 = 1e30;

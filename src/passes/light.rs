@@ -8,11 +8,11 @@ use glam::{DVec2, DVec3};
 
 use super::gpu_data::{Light, Receiver, vec2, vec4};
 use super::maps::MapLayout;
+use crate::facts::source::Source;
+use crate::facts::window::Rect;
+use crate::facts::{LightFacts, SceneFacts};
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::solid_angle::solid_angle;
-use crate::scene::facts::{LightFacts, SceneFacts};
-use crate::scene::source::Source;
-use crate::scene::window::Rect;
 
 /// Footprints of more texels than this get workgroups of their own.
 const WIDE_TEXELS: u32 = 1024;

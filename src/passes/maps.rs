@@ -7,8 +7,8 @@
 use std::ops::Range;
 
 use super::light::places_by_planes;
+use crate::facts::{FloorMap, SceneFacts};
 use crate::scene::Receiver;
-use crate::scene::facts::{FloorMap, SceneFacts};
 
 /// Where a map lies that nobody asks for, as in `shaders/shared/receivers.wgsl`.
 pub const NOWHERE: u32 = u32::MAX;

@@ -5,8 +5,8 @@ use super::gpu_data::Planes;
 use super::light::light_uniform;
 use super::maps::MapLayout;
 use super::slot::{self, Slot};
+use crate::facts::SceneFacts;
 use crate::scene::Slicing;
-use crate::scene::facts::SceneFacts;
 
 /// Word of the beam queue where the dispatch over beams with wide footprints lies.
 pub(super) const WIDE_DISPATCH: u32 = 4;

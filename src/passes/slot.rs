@@ -3,8 +3,8 @@
 use super::desc::Groups;
 use super::estimate;
 use super::maps::MapLayout;
-use crate::scene::facts::SceneFacts;
-use crate::scene::placement::LevelMapKey;
+use crate::facts::SceneFacts;
+use crate::facts::placement::LevelMapKey;
 
 /// Words at the head of a queue: the workgroups of the dispatch that empties it, and the count.
 pub const QUEUE_HEAD_WORDS: u64 = 4;

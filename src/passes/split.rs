@@ -6,7 +6,7 @@ use super::gpu_data::Split;
 use super::light::light_uniform;
 use super::slot::{self, Slot};
 use super::surface::wanted_for_light;
-use crate::scene::facts::SceneFacts;
+use crate::facts::SceneFacts;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {

@@ -3,8 +3,8 @@
 use super::desc::{PassDesc, Repeat, Run, Step, Work};
 use super::light::light_uniform;
 use super::slot::{self, Slot};
-use crate::scene::facts::SceneFacts;
-use crate::scene::source::Source;
+use crate::facts::SceneFacts;
+use crate::facts::source::Source;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {

@@ -6,7 +6,7 @@ use super::gpu_data::Unfollowed;
 use super::light::light_uniform;
 use super::slot::Slot;
 use super::surface::wanted_for_light;
-use crate::scene::source::Source;
+use crate::facts::source::Source;
 
 /// Steps along the shortest wave, at least.
 const STEPS_PER_WAVE: f64 = 64.0;

@@ -5,9 +5,9 @@ use super::desc::{PassDesc, Repeat, Run, Step, Work};
 use super::level_map::view_of;
 use super::plane_steps::{cull_steps, objects_of, over_queue, plane_step, wanted_for_planes};
 use super::slot::Slot;
+use crate::facts::SceneFacts;
+use crate::facts::placement::LevelBox;
 use crate::physics::slicing::plane_depth;
-use crate::scene::facts::SceneFacts;
-use crate::scene::placement::LevelBox;
 
 /// See the module.
 pub const PASS: PassDesc = PassDesc {

@@ -10,10 +10,10 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::facts::placement::LevelMapKey;
+use crate::facts::{SceneFacts, Wanted};
 use crate::passes::{self, PassDesc, Repeat, Slot, slot};
 use crate::scene::LayerName;
-use crate::scene::facts::{SceneFacts, Wanted};
-use crate::scene::placement::LevelMapKey;
 use crate::stats::{AbsentPass, ChosenDials, Warning};
 
 /// The shortest list of passes that makes what a scene asks for, and why.

@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 
 use super::ReferenceError;
 use super::place::Place;
+use crate::facts::CameraFacts;
 use crate::physics::refraction::{normal_from_slope, reflect_direction, refract_direction};
-use crate::scene::facts::CameraFacts;
 
 /// Above the water by more than this counts as dry, m: rounding of a floor that lies in the water's plane.
 const DRY_M: f64 = 1e-9;

@@ -7,8 +7,8 @@ use glam::{DVec2, DVec3};
 use super::place::Place;
 use super::rings::Rings;
 use super::window::{LampDrift, LightWindow, Target, window_of};
+use crate::facts::source::Source;
 use crate::physics::refraction::{entry_distance, normal_from_slope};
-use crate::scene::source::Source;
 use crate::waves::SurfacePoint;
 
 /// Least area that a square shows to the light as a share of what it covers, for the number of rays: light that only grazes it under

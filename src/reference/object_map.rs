@@ -17,9 +17,9 @@ use super::place::Place;
 use super::slanted::{halves, rows};
 use super::tally::add_to;
 use super::{ReferenceError, Truth, TruthKind, TruthSettings};
+use crate::facts::placement::LevelBox;
 use crate::physics::attenuation::transmission;
 use crate::scene::ResolvedScene;
-use crate::scene::placement::LevelBox;
 
 /// Rays per texel of evenly lit water in the first round, each half.
 const FIRST_POINTS: f64 = 8.0;

@@ -12,8 +12,8 @@ use super::refract::{BLOCK, Block, RowRefractor};
 use super::rings::Rings;
 use super::slanted::Cells;
 use super::window::{LightWindow, Target};
+use crate::facts::source::Source;
 use crate::physics::fresnel::fresnel_transmittance;
-use crate::scene::source::Source;
 
 /// Part of the object's size that rays go on beyond it.
 const BEYOND: f64 = 1e-3;

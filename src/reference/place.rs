@@ -10,10 +10,10 @@ use super::checks::{check_surface, check_water, point_lights, suns};
 use super::light::PlacedLight;
 use super::occluders::Occluders;
 use super::window::LampDrift;
+use crate::facts::SceneFacts;
+use crate::facts::source::Source;
 use crate::physics::sky::sky_irradiance;
 use crate::physics::turns::sin_cos_turns;
-use crate::scene::facts::SceneFacts;
-use crate::scene::source::Source;
 use crate::scene::{Light, ResolvedScene};
 use crate::waves::SurfacePoint;
 

@@ -7,7 +7,7 @@ use super::place::Place;
 use super::rings::Rings;
 use super::slanted::Cells;
 use super::window::LightWindow;
-use crate::scene::source::Source;
+use crate::facts::source::Source;
 
 /// The places.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::{ReferenceError, TruthSettings, disk, map, object_map, view};
-use crate::scene::facts::SceneFacts;
+use crate::facts::SceneFacts;
 use crate::scene::{Output, Receiver, ResolvedScene};
 
 /// Shares of shadow between which a value lies in the soft edge itself.

@@ -12,7 +12,7 @@ use super::place::Place;
 use super::shine::shine;
 use super::tally::add_to;
 use super::{ReferenceError, Truth, TruthKind, TruthSettings};
-use crate::scene::source::Source;
+use crate::facts::source::Source;
 use crate::scene::{Output, ResolvedScene};
 
 /// Rays per footprint of evenly lit water in the first round, each half.

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{RenderError, Renderer, geometry, slot_name};
+use crate::facts::SceneFacts;
+use crate::facts::placement::LevelMapKey;
 use crate::gpu::Binding;
 use crate::gpu::uniforms::Placed;
 use crate::passes::desc::Step;
@@ -11,8 +13,6 @@ use crate::passes::slot::{SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
 use crate::passes::{estimate, light};
 use crate::plan::Plan;
 use crate::scene::ResolvedScene;
-use crate::scene::facts::SceneFacts;
-use crate::scene::placement::LevelMapKey;
 
 /// Names of the buffers beside the slots'.
 pub(super) const EMPTY_LIST: &str = "empty list";

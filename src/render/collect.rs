@@ -6,15 +6,15 @@ use glam::DVec3;
 
 use super::RenderError;
 use crate::accuracy::estimate::{Compared, FrameComparison, estimate_error};
+use crate::facts::SceneFacts;
+use crate::facts::placement::LevelMapKey;
+use crate::facts::unfollowed;
+use crate::facts::warnings::{SCATTERING_NOT_FOLLOWED, WAVES_UNDERSAMPLED};
 use crate::frame::Layer;
 use crate::passes::camera_hits::MARCH_UNFINISHED;
 use crate::passes::maps::MapLayout;
 use crate::passes::slot::{ENERGY_TERMS, Slot};
 use crate::passes::{estimate, light, term};
-use crate::scene::facts::SceneFacts;
-use crate::scene::placement::LevelMapKey;
-use crate::scene::unfollowed;
-use crate::scene::warnings::{SCATTERING_NOT_FOLLOWED, WAVES_UNDERSAMPLED};
 use crate::scene::{LayerName, Receiver};
 use crate::stats::{EnergyAccount, PlaneStats, Warning};
 

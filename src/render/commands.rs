@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::buffers::{DrawTargets, FrameBuffers};
 use super::{KernelKey, RenderError, Renderer, ms_since, slot_name};
+use crate::facts::SceneFacts;
 use crate::gpu::kernel::RasterTargets;
 use crate::gpu::pieces::PIECE;
 use crate::gpu::shader::Access;
@@ -12,7 +13,6 @@ use crate::gpu::{Binding, GpuError, Kernel, RasterKernel};
 use crate::passes::desc::{Groups, PassDesc, Run, Step, Surface, Work};
 use crate::passes::level_map::EMPTY_DEPTH;
 use crate::passes::slot::Slot;
-use crate::scene::facts::SceneFacts;
 use crate::stats::TimeStats;
 
 /// When the recording of a submission began.

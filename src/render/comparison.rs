@@ -9,11 +9,11 @@ use super::buffers::FrameBuffers;
 use super::collect::{ACCOUNT_BYTES, has_wrapped};
 use super::commands::Recording;
 use super::{RenderError, Renderer, check_cancelled, ms_since, slot_name, timed};
+use crate::facts::SceneFacts;
 use crate::gpu::readback::{self, Staged};
 use crate::passes::desc::{PassDesc, Run};
 use crate::passes::slot::Slot;
 use crate::passes::{self, light};
-use crate::scene::facts::SceneFacts;
 use crate::stats::TimeStats;
 
 /// Passes of a light that is done again coarsely: those that make its sums, those that take them, and those that compare.

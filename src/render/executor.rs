@@ -13,13 +13,13 @@ use super::{
     RenderError, Renderer, RunResult, check_cancelled, collect, geometry, ms_since, slot_name,
     timed,
 };
+use crate::facts::placement::{LevelBox, LevelMapKey};
+use crate::facts::{SceneFacts, Wanted};
 use crate::gpu::{GpuError, readback};
 use crate::passes::desc::{PassDesc, Repeat, Run};
 use crate::passes::slot::{self, Lifetime, Slot, band_rows};
 use crate::passes::{self, light};
 use crate::plan::{self, Plan};
-use crate::scene::facts::{SceneFacts, Wanted};
-use crate::scene::placement::{LevelBox, LevelMapKey};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::{AccuracyStats, TimeStats};
 

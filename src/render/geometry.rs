@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::facts::SceneFacts;
+use crate::facts::placement::ObjectFacts;
 use crate::gpu::GpuContext;
 use crate::mesh::{HierarchyNode, Mesh, hierarchy};
 use crate::passes::gpu_data::{Instance, vec4};
-use crate::scene::facts::SceneFacts;
-use crate::scene::placement::ObjectFacts;
 
 /// Where a mesh lies in the buffer, in 16-byte units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

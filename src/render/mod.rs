@@ -17,17 +17,17 @@ use std::time::Instant;
 
 use tokio_util::sync::CancellationToken;
 
+use crate::cache::{ArenaError, LevelMapCache};
 use crate::config::RenderConfig;
+use crate::facts::SceneFacts;
+use crate::facts::placement::LevelMapKey;
 use crate::frame::Frame;
 use crate::gpu::shader::ShaderSources;
 use crate::gpu::timing::Timing;
 use crate::gpu::uniforms::Uniforms;
 use crate::gpu::{BindGroups, BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
-use crate::level_map::{ArenaError, LevelMapCache};
 use crate::passes::{self, Repeat, Slot, shaders};
 use crate::plan::{self, Cached, Plan};
-use crate::scene::facts::SceneFacts;
-use crate::scene::placement::LevelMapKey;
 use crate::scene::{ResolvedScene, SceneError};
 use crate::stats::{
     AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,

@@ -3,9 +3,9 @@
 use tokio_util::sync::CancellationToken;
 
 use super::{RenderError, Renderer};
+use crate::facts::{SceneFacts, Wanted};
 use crate::plan::{self, WarmCache};
 use crate::scene::ResolvedScene;
-use crate::scene::facts::{SceneFacts, Wanted};
 use crate::stats::{ChosenDials, Warning};
 use crate::tuning::choose::{self, Prospect};
 use crate::tuning::{cost, ladder};

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use tokio_util::sync::CancellationToken;
 
 use super::{RenderError, Renderer};
-use crate::level_map::{WarmUp, WarmedMap};
+use crate::cache::{WarmUp, WarmedMap};
+use crate::facts::placement::LevelMapKey;
+use crate::facts::{SceneFacts, Wanted};
 use crate::mesh::Mesh;
 use crate::plan::{self, Cached as _};
-use crate::scene::facts::{SceneFacts, Wanted};
-use crate::scene::placement::LevelMapKey;
 
 impl Renderer {
     /// Builds the level maps that an unrotated, uniformly scaled instance of `mesh` needs under some suns, as a frame would, and

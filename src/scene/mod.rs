@@ -7,29 +7,20 @@
 //! To add a field: put it into `types` with unit, range and default in its doc comment, its range into `ranges`, check it in
 //! `validate`, and run the tests, which tell where `openapi.yaml` has to follow.
 
-mod detail;
 pub mod error;
-pub mod facts;
 mod findings;
 pub mod json;
-mod lamp_window;
 mod names;
 pub mod overrides;
 pub mod parse;
-pub mod placement;
 mod pointer;
 pub mod quality;
 pub mod ranges;
 pub mod resolve;
-pub mod source;
-mod stopped;
 mod strict;
 pub mod types;
-pub mod unfollowed;
 pub mod validate;
 mod validate_output;
-pub mod warnings;
-pub mod window;
 
 pub use error::{Issue, IssueKind, SceneError};
 pub use quality::{Method, Placement, Quality, Slicing};

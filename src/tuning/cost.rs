@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::facts::SceneFacts;
 use crate::passes::estimate::{self, Compared};
 use crate::passes::maps::MapLayout;
 use crate::passes::slot;
 use crate::plan::Plan;
-use crate::scene::facts::SceneFacts;
 
 /// Cost of a pass on one machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -11,6 +11,5 @@ pub mod calibration;
 pub mod choose;
 pub mod cost;
 pub mod ladder;
-pub mod measure;
 
 pub use calibration::Calibration;

@@ -1,7 +1,7 @@
 //! Dials: what may be swept, and how it is written.
 
-use caustica::accuracy::dial::{Dial, DialError, dials, with_dials};
 use caustica::config::Limits;
+use caustica::lab::study::dial::{Dial, DialError, dials, with_dials};
 use caustica::scene::Method;
 
 use super::scene_files;

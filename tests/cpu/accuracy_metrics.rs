@@ -1,12 +1,14 @@
 //! Perceptual metrics, the figures of an image, the order of a sweep and the Pareto front: right for known cases, and able to
 //! reject a wrong image.
 
+use caustica::accuracy::LinearImage;
+use caustica::accuracy::MetricError;
 use caustica::accuracy::display::{SHOWN_WHITE, display_linear, display_rgb};
 use caustica::accuracy::flip::flip;
 use caustica::accuracy::luv::{luv_distance, luv_from_linear_srgb};
-use caustica::accuracy::order::{TRUTH_MARGIN, dial_number, fit_levels, fit_order};
-use caustica::accuracy::study::{ErrorFigures, LinearImage, Point, Study, Sweep};
-use caustica::accuracy::{MetricError, error_figures, fit_orders, mark_pareto_front};
+use caustica::lab::study::order::{TRUTH_MARGIN, dial_number, fit_levels, fit_order};
+use caustica::lab::study::study::{ErrorFigures, Point, Study, Sweep};
+use caustica::lab::study::{error_figures, fit_orders, mark_pareto_front};
 use serde_json::json;
 
 const SIZE: u32 = 48;

@@ -1,8 +1,8 @@
 //! Plots: they hold what they should, in both formats, and refuse what cannot be drawn.
 
-use caustica::accuracy::fit_orders;
-use caustica::accuracy::plot::{Plot, PlotError, convergence, error_against_time};
-use caustica::accuracy::study::{Study, Sweep};
+use caustica::lab::study::fit_orders;
+use caustica::lab::study::plot::{Plot, PlotError, convergence, error_against_time};
+use caustica::lab::study::study::{Study, Sweep};
 use serde_json::json;
 
 use crate::synthetic_study::{point, study};

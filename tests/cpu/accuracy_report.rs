@@ -3,14 +3,14 @@
 use std::fs;
 use std::path::PathBuf;
 
-use caustica::accuracy::error_images::{MOST_COLUMNS, error_images};
-use caustica::accuracy::fit_orders;
-use caustica::accuracy::plot::PlotError;
-use caustica::accuracy::report::{
+use caustica::lab::study::error_images::{MOST_COLUMNS, error_images};
+use caustica::lab::study::fit_orders;
+use caustica::lab::study::plot::PlotError;
+use caustica::lab::study::report::{
     ReportError, ReportLinks, SweepLinks, conclusions, to_csv, to_json, to_markdown, write_study,
 };
-use caustica::accuracy::study::{Study, StudyImages, Sweep};
-use caustica::accuracy::words::{
+use caustica::lab::study::study::{Study, StudyImages, Sweep};
+use caustica::lab::study::words::{
     named_setting, percent, setting, signed_percent, significant, thousands,
 };
 use caustica::stats::Warning;

@@ -1,12 +1,12 @@
 //! The thesis's experiment without an adapter: what may be asked for, and the files made of what was found.
 
-use caustica::accuracy::study::SpreadMs;
 use caustica::cli::experiment::{meshes, planes};
-use caustica::experiment::{
+use caustica::lab::experiment::{
     Experiment, HitPoint, MeshResult, PlanePoint, Way, WayFigures, plots, scene, to_csv,
     to_markdown,
 };
-use caustica::mesh::shapes;
+use caustica::lab::shapes;
+use caustica::lab::study::study::SpreadMs;
 use caustica::scene::{Method, Placement, Slicing};
 
 #[test]

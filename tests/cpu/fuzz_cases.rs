@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use caustica::hard_cases;
+use caustica::lab::hard_cases;
 use serde_json::Value;
 
 use super::fuzz_checks;

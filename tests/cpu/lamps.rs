@@ -2,12 +2,12 @@
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::Limits;
+use caustica::facts::SceneFacts;
+use caustica::facts::source::Source;
 use caustica::physics::refraction::{entry_distance, refract_direction};
 use caustica::physics::solid_angle::solid_angle;
 use caustica::reference::closed_form::LampOverFlatWater;
 use caustica::reference::{ReferenceSettings, irradiance_map};
-use caustica::scene::facts::SceneFacts;
-use caustica::scene::source::Source;
 use caustica::scene::{ResolvedScene, Scene};
 use caustica::waves::normal;
 use glam::{DVec2, DVec3};

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use caustica::level_map::{Arena, LevelMapCache};
-use caustica::scene::placement::LevelMapKey;
+use caustica::cache::{Arena, LevelMapCache};
+use caustica::facts::placement::LevelMapKey;
 
 fn key(mesh: &str, texels: u32) -> LevelMapKey {
     LevelMapKey {

@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
-use caustica::mesh::shapes::{ALL, Shape};
-use caustica::mesh::{Mesh, MeshStore, obj};
+use caustica::assets::MeshStore;
+use caustica::lab::shapes::{ALL, Shape};
+use caustica::mesh::{Mesh, obj};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -124,7 +125,7 @@ fn the_same_text_everywhere() {
 
 #[test]
 fn nothing_asks_the_systems_mathematics_library() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/mesh/shapes");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/lab/shapes");
     let mut files = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -190,7 +191,7 @@ fn names_are_unique_and_every_shape_is_described() {
 
 #[test]
 fn the_table_of_the_module_is_the_catalogue() {
-    let text = include_str!("../../src/mesh/shapes/mod.rs");
+    let text = include_str!("../../src/lab/shapes/mod.rs");
     let table: Vec<&str> = text
         .lines()
         .filter(|line| line.starts_with("//! | `"))

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use caustica::assets::MeshStore;
 use caustica::config::Limits;
-use caustica::mesh::{MeshError, MeshStore};
+use caustica::mesh::MeshError;
 
 fn obj(height: u32) -> String {
     format!("v 0 0 0\nv 1 0 0\nv 0 {height} 0\nf 1 2 3\n")

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use caustica::hard_cases;
+use caustica::lab::hard_cases;
 use caustica::passes::shaders;
 
 use super::shader_plants::Red;

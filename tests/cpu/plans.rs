@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use caustica::facts::SceneFacts;
+use caustica::facts::placement::LevelMapKey;
 use caustica::passes::{self, PassDesc};
 use caustica::plan::{self, Cached, Plan, PlanError};
 use caustica::scene::ResolvedScene;
-use caustica::scene::facts::SceneFacts;
-use caustica::scene::placement::LevelMapKey;
 use serde_json::{Value, json};
 
 use super::scene_files;

@@ -1,8 +1,8 @@
 //! What a scene's facts warn of before anything is rendered.
 
+use caustica::facts::SceneFacts;
+use caustica::facts::source::Source;
 use caustica::physics::refraction::refract_direction;
-use caustica::scene::facts::SceneFacts;
-use caustica::scene::source::Source;
 use caustica::waves::normal;
 use glam::DVec3;
 use serde_json::{Value, json};

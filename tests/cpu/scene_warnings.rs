@@ -3,9 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use caustica::config::Limits;
+use caustica::facts::SceneFacts;
 use caustica::physics::fresnel::fresnel_transmittance;
 use caustica::physics::solid_angle::solid_angle;
-use caustica::scene::facts::SceneFacts;
 use caustica::scene::{Scene, resolve};
 use caustica::stats::Warning;
 use glam::DVec3;

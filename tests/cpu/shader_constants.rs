@@ -1,5 +1,6 @@
 //! Figures that stand in Rust and in WGSL are the same, and dispatches cover their work.
 
+use caustica::facts::{MOST_LIGHTS, SceneFacts};
 use caustica::gpu::shader::Module;
 use caustica::passes::camera_hits::MARCH_UNFINISHED;
 use caustica::passes::desc::Run;
@@ -7,7 +8,6 @@ use caustica::passes::maps::{self, MapLayout};
 use caustica::passes::{
     self, Groups, PassDesc, Repeat, Work, depth_profile, estimate, landed, level_map, slot, term,
 };
-use caustica::scene::facts::{MOST_LIGHTS, SceneFacts};
 use caustica::scene::ranges::{self, Integer as _};
 use serde_json::json;
 use wgpu::naga::{self, Expression, Literal, TypeInner};

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use caustica::accuracy::study::Study;
+use caustica::lab::study::study::Study;
 
 use super::folder::Folder;
 use super::scene_files;

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use caustica::hard_cases::{self, Settings, Truths, Verdict};
+use caustica::lab::hard_cases::{self, Settings, Truths, Verdict};
 
 use super::harness::renderer;
 

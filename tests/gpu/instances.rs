@@ -3,11 +3,11 @@
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;
+use caustica::facts::SceneFacts;
 use caustica::frame::Frame;
 use caustica::passes::shaders;
 use caustica::reference::closed_form::flat_water_irradiance;
 use caustica::render::{RenderError, Renderer};
-use caustica::scene::facts::SceneFacts;
 use caustica::scene::{LayerName, Light};
 use serde_json::{Value, json};
 

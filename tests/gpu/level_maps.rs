@@ -4,9 +4,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use caustica::cache::{WarmSun, WarmUp};
 use caustica::config::RenderConfig;
 use caustica::frame::Frame;
-use caustica::level_map::{WarmSun, WarmUp};
 use caustica::mesh::Mesh;
 use caustica::passes::shaders;
 use caustica::render::{RenderError, Renderer};

@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use axum::body::Body;
 use axum::http::Request;
+use caustica::cache::{WarmUp, WarmedMap};
 use caustica::config::{Limits, RenderConfig};
 use caustica::frame::Frame;
 use caustica::gpu::GpuError;
+use caustica::gpu_queue::RenderBackend;
 use caustica::http::app;
-use caustica::jobs::RenderBackend;
-use caustica::level_map::{WarmUp, WarmedMap};
 use caustica::mesh::Mesh;
 use caustica::plan::Plan;
 use caustica::render::{RenderError, Renderer, SelfCheck};

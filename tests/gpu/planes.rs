@@ -4,8 +4,8 @@ use std::sync::{Arc, OnceLock};
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;
+use caustica::lab::shapes::Shape;
 use caustica::mesh::Mesh;
-use caustica::mesh::shapes::Shape;
 use caustica::physics::refraction::{direction_to_light, normal_from_slope, refract_direction};
 use caustica::render::RenderError;
 use caustica::scene::{ResolvedScene, Wave};

@@ -3,9 +3,10 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use caustica::assets::MeshStore;
 use caustica::config::Limits;
 use caustica::frame::Frame;
-use caustica::mesh::{Mesh, MeshStore};
+use caustica::mesh::Mesh;
 use caustica::render::Renderer;
 use caustica::scene::{ResolvedScene, Scene, resolve};
 use caustica::stats::Warning;

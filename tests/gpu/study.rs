@@ -1,10 +1,10 @@
 //! Studies of accuracy with the real renderer, from sweep to report, from the library, the command line and HTTP.
 
-use caustica::accuracy::dial::Dial;
-use caustica::accuracy::report::write_study;
-use caustica::accuracy::study::{Study, StudyImages};
-use caustica::accuracy::sweep::{Refusal, StudyError, SweepSettings, run_study};
 use caustica::config::{Limits, RenderConfig};
+use caustica::lab::study::dial::Dial;
+use caustica::lab::study::report::write_study;
+use caustica::lab::study::study::{Study, StudyImages};
+use caustica::lab::study::sweep::{Refusal, StudyError, SweepSettings, run_study};
 use caustica::reference::{Truth, TruthSettings, truth};
 use caustica::render::{RenderError, Renderer};
 use caustica::scene::ResolvedScene;

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use caustica::gpu_queue::QueueSettings;
 use caustica::http::ProblemKind;
-use caustica::jobs::QueueSettings;
 
 use super::support::{Behaviour, Reply, Service, scenes};
 

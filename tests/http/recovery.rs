@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use caustica::config::Limits;
 use caustica::gpu::GpuError;
+use caustica::gpu_queue::{GpuState, JobError};
 use caustica::http::ProblemKind;
-use caustica::jobs::{GpuState, JobError};
 use caustica::render::RenderError;
 use caustica::stats::CacheStats;
 

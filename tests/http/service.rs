@@ -7,10 +7,10 @@ use axum::body::Body;
 use axum::http::{Method, Request};
 use axum::routing::{self, MethodRouter};
 use caustica::config::Limits;
+use caustica::gpu_queue::QueueSettings;
 use caustica::http::routes::health::Ready;
 use caustica::http::routes::info::Info;
 use caustica::http::{AppState, ProblemKind, layered};
-use caustica::jobs::QueueSettings;
 use caustica::stats::CacheStats;
 use tower::ServiceExt as _;
 

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::time::Duration;
 
 use axum::http::Method;
+use caustica::cache::{WarmSun, WarmUp};
 use caustica::config::Limits;
 use caustica::gpu::GpuError;
+use caustica::gpu_queue::{GpuState, QueueSettings};
 use caustica::http::routes::meshes::Uploaded;
 use caustica::http::{Problem, ProblemKind, openapi};
-use caustica::jobs::{GpuState, QueueSettings};
-use caustica::level_map::{WarmSun, WarmUp};
 use caustica::mesh::MeshInfo;
 use caustica::render::RenderError;
 use serde_json::{Value, json};

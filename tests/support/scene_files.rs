@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use caustica::assets::MeshStore;
 use caustica::cli::scene_file;
 use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
 use caustica::config::Limits;
-use caustica::mesh::{Mesh, MeshStore};
+use caustica::mesh::Mesh;
 use caustica::scene::{ResolvedScene, Scene, resolve};
 use serde_json::Value;
 

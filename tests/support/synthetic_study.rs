@@ -1,10 +1,10 @@
 //! A study as a sweep would fill it, made by formulas: errors fall with known orders down to the truth's own error.
 
-use caustica::accuracy::study::{
-    CostFigures, ErrorFigures, LinearImage, PassCost, Point, SpreadMs, Study, StudyImages, Sweep,
-    TruthFigures,
+use caustica::accuracy::LinearImage;
+use caustica::lab::study::study::{
+    CostFigures, ErrorFigures, PassCost, Point, SpreadMs, Study, StudyImages, Sweep, TruthFigures,
 };
-use caustica::accuracy::{fit_orders, mark_pareto_front};
+use caustica::lab::study::{fit_orders, mark_pareto_front};
 use caustica::stats::{AdapterStats, Warning};
 use serde_json::{Value, json};
 

@@ -17,7 +17,7 @@ use super::super::observe::Arrival;
 use super::super::problem::{CommonProblems, MeshProblems, Problem, UploadProblems};
 use super::super::state::AppState;
 use super::super::warm::{WarmParameters, WarmQuery};
-use crate::level_map::{WarmUp, WarmedMap};
+use crate::cache::{WarmUp, WarmedMap};
 use crate::mesh::{Mesh, MeshInfo};
 
 /// Media types that a mesh is read from.

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use caustica::cache::{WarmSun, WarmUp, WarmedMap};
 use caustica::frame::{Frame, Layer};
 use caustica::gpu::GpuError;
-use caustica::jobs::RenderBackend;
-use caustica::level_map::{WarmSun, WarmUp, WarmedMap};
+use caustica::gpu_queue::RenderBackend;
 use caustica::mesh::Mesh;
 use caustica::plan::{Plan, PlannedPass};
 use caustica::render::{RenderError, SelfCheck, SelfCheckItem};

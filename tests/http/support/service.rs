@@ -5,8 +5,8 @@ use std::time::Duration;
 use axum::body::Body;
 use axum::http::{Method, Request};
 use caustica::config::{Limits, RenderConfig};
+use caustica::gpu_queue::{GpuQueue, GpuState, QueueSettings};
 use caustica::http::{AppState, app};
-use caustica::jobs::{GpuQueue, GpuState, QueueSettings};
 use tower::ServiceExt as _;
 
 use super::{Control, Reply};

@@ -1,0 +1,5 @@
+//! What scenes refer to by content id: meshes.
+
+pub mod meshes;
+
+pub use meshes::{Inserted, MeshStore};

@@ -1,0 +1,223 @@
+//! Where the light of a sun or point light comes from, and the grid that samples it.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+
+use super::window::Rect;
+use crate::physics::fresnel::fresnel_transmittance;
+use crate::physics::refraction;
+use crate::scene::Light;
+use crate::waves::WaterSurface;
+
+/// Largest cell of a point light's grid over its smallest, at most.
+const MOST_STRETCH: f64 = 9.0;
+/// Sides of the window beyond which a light is far aside.
+const FAR_ASIDE: f64 = 4.0;
+/// Least depth and distance that a direction can be told from, m.
+const TINY_M: f64 = 1e-6;
+
+/// Where light comes from, local coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// A sun.
+    Sun {
+        /// Unit direction to it.
+        to_light: DVec3,
+    },
+    /// A point light above the water at its place.
+    Point {
+        /// Where it is, m.
+        position_m: DVec3,
+    },
+    /// A point light under the water at its place, or on it.
+    Submerged {
+        /// Where it is, m.
+        position_m: DVec3,
+    },
+}
+
+/// A light that dry surfaces see.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AirLight {
+    /// A sun above the horizon or a point light above the water.
+    pub source: Source,
+    /// W/m² on a plane facing the sun, or W/sr of the point light.
+    pub power: [f64; 3],
+}
+
+impl Source {
+    /// Source and power of a light around the local origin `origin_m`; `None` for skies and suns at or below the horizon.
+    pub fn of(light: &Light, origin_m: DVec3, surface: &WaterSurface) -> Option<(Self, [f64; 3])> {
+        match light {
+            Light::Sky(_) => None,
+            Light::Sun(sun) if sun.elevation_deg <= 0.0 => None,
+            Light::Sun(sun) => {
+                let to_light = refraction::direction_to_light(
+                    sun.elevation_deg.to_radians(),
+                    sun.azimuth_deg.to_radians(),
+                );
+                Some((Self::Sun { to_light }, sun.irradiance_w_m2))
+            }
+            Light::Point(point) => {
+                let position_m = DVec3::from(point.position_m) - origin_m;
+                let water_m = surface.at(position_m.x, position_m.z).height_m;
+                let source = if position_m.y > water_m {
+                    Self::Point { position_m }
+                } else {
+                    Self::Submerged { position_m }
+                };
+                Some((source, point.intensity_w_sr))
+            }
+        }
+    }
+
+    /// Unit direction under flat water of the ray that goes through `target_m`; `None` where none goes into the water.
+    ///
+    /// Of a point light above the water the ray is refracted on its way so that it really meets the target (thesis §4.2.1,
+    /// eq. 2-8); one under water shines straight.
+    pub fn direction_at(&self, target_m: DVec3, ior: f64) -> Option<DVec3> {
+        match *self {
+            Self::Sun { to_light } => refraction::refract_direction(-to_light, DVec3::Y, ior),
+            Self::Submerged { position_m } => {
+                Some((target_m - position_m).try_normalize().unwrap_or(-DVec3::Y))
+            }
+            Self::Point { position_m } => {
+                let sideways = DVec2::new(target_m.x - position_m.x, target_m.z - position_m.z);
+                let distance_m = sideways.length();
+                let depth_m = (-target_m.y).max(TINY_M);
+                let height_m = position_m.y.max(TINY_M);
+                let under_m =
+                    distance_m - refraction::entry_distance(height_m, depth_m, distance_m, ior);
+                let along = sideways.try_normalize().unwrap_or(DVec2::ZERO) * under_m;
+                DVec3::new(along.x, -depth_m, along.y).try_normalize()
+            }
+        }
+    }
+
+    /// How far above height `y_m` a point light under flat water seems to be, seen from right below: h + d/n; of one under water
+    /// how far it is.
+    pub fn seeming_height_m(&self, y_m: f64, ior: f64) -> f64 {
+        match *self {
+            Self::Sun { .. } => f64::INFINITY,
+            Self::Submerged { position_m } => position_m.y - y_m,
+            Self::Point { position_m } => position_m.y.max(0.0) + (-y_m).max(0.0) / ior,
+        }
+    }
+
+    /// Most flux that goes to `area_m2` across its rays around a place under flat water, of a light of unit power: m² of a sun, sr of
+    /// a point light, near which an area takes half of all directions at most. What is absorbed is not taken off.
+    pub(super) fn most_onto(&self, middle_m: DVec3, area_m2: f64, ior: f64) -> f64 {
+        let within = |distance2_m2: f64| {
+            if area_m2 > 0.0 {
+                area_m2 / (distance2_m2 + area_m2 / TAU)
+            } else {
+                0.0
+            }
+        };
+        match *self {
+            Self::Sun { to_light } => {
+                let enters = fresnel_transmittance(to_light.y, ior) * to_light.y;
+                self.direction_at(middle_m, ior)
+                    .map_or(0.0, |way| area_m2 * enters / -way.y)
+            }
+            Self::Point { position_m } => {
+                let sideways =
+                    DVec2::new(middle_m.x - position_m.x, middle_m.z - position_m.z).length();
+                within(
+                    sideways
+                        .hypot(self.seeming_height_m(middle_m.y, ior))
+                        .powi(2),
+                )
+            }
+            Self::Submerged { position_m } => within((middle_m - position_m).length_squared()),
+        }
+    }
+
+    /// Where a point light is; `None` of a sun.
+    pub fn position_m(&self) -> Option<DVec3> {
+        match *self {
+            Self::Sun { .. } => None,
+            Self::Point { position_m } | Self::Submerged { position_m } => Some(position_m),
+        }
+    }
+}
+
+/// How the grid's places lie on the water: x = foot + s (1 + β s²) along both axes, so that cells are small under a near light,
+/// where its rays spread most, and the same polynomial gives a vertex wherever it is needed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Range of s, m; of a light under water of the octahedral places.
+    pub places: Rect,
+    /// The point under the light, local (x, z); (0, 0) of suns, lights far aside and lights under water.
+    pub foot_m: DVec2,
+    /// β, 1/m²; 0: all cells are alike.
+    pub bend_per_m2: f64,
+}
+
+impl Grid {
+    /// The grid over `window` for light from `source`.
+    pub fn over(window: Rect, source: &Source) -> Self {
+        let even = Self {
+            places: window,
+            foot_m: DVec2::ZERO,
+            bend_per_m2: 0.0,
+        };
+        let Source::Point { position_m } = *source else {
+            return even;
+        };
+        let foot_m = DVec2::new(position_m.x, position_m.z);
+        let (low, high) = (window.min - foot_m, window.max - foot_m);
+        let reach_m = low.abs().max(high.abs()).max_element();
+        if reach_m > FAR_ASIDE * window.size().max_element() {
+            // Its light changes little over the window, and f32 could not tell its places from so far.
+            return even;
+        }
+        let steep = reach_m / position_m.y.max(TINY_M * reach_m);
+        let stretch = (1.0 + 0.25 * steep * steep).min(MOST_STRETCH);
+        // x(S) = reach with x′(S) = stretch.
+        let end = 3.0 * reach_m / (stretch + 2.0);
+        let bend_per_m2 = (stretch - 1.0) / (3.0 * end * end);
+        let place = |x: f64| {
+            let (mut s_low, mut s_high) = (-end, end);
+            for _ in 0..100 {
+                let s = 0.5 * (s_low + s_high);
+                if s * (1.0 + bend_per_m2 * s * s) < x {
+                    s_low = s;
+                } else {
+                    s_high = s;
+                }
+            }
+            0.5 * (s_low + s_high)
+        };
+        let place2 = |p: DVec2| DVec2::new(place(p.x), place(p.y));
+        Self {
+            places: Rect {
+                min: place2(low),
+                max: place2(high),
+            },
+            foot_m,
+            bend_per_m2,
+        }
+    }
+
+    /// dx/ds.
+    pub fn stretch(&self, s: f64) -> f64 {
+        1.0 + 3.0 * self.bend_per_m2 * s * s
+    }
+
+    /// Longest side of the largest of `cells` × `cells` cells, m.
+    pub fn widest_cell_m(&self, cells: u32) -> f64 {
+        let farthest = self.places.min.abs().max(self.places.max.abs());
+        let step = self.places.size() / f64::from(cells);
+        (step.x * self.stretch(farthest.x)).max(step.y * self.stretch(farthest.y))
+    }
+}
+
+/// Irradiance of a plane facing the light, W/m², at a height of the floor (or of the water at rest where there is none) in the middle
+/// of what is looked at: what exposure takes for a point light. Nearer than 0.1 m counts as 0.1 m.
+pub(super) fn facing_w_m2(position_m: DVec3, floor_y_m: Option<f64>, intensity_w_sr: f64) -> f64 {
+    const NEAREST_M: f64 = 0.1;
+    let middle_m = DVec3::new(0.0, floor_y_m.unwrap_or(0.0), 0.0);
+    intensity_w_sr / (position_m - middle_m).length().max(NEAREST_M).powi(2)
+}

@@ -1,0 +1,303 @@
+//! How much light objects stop in truth that they are not simulated to stop: rays through the meshes' hierarchies from a grid of
+//! places on the water at rest. A sample of a thousand places or so, for warnings; no picture depends on it.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec2, DVec3};
+
+use super::placement::{ObjectFacts, corners};
+use super::source::Source;
+use super::window::{EVERYWHERE_M, Rect};
+use super::{LightFacts, SceneFacts};
+use crate::mesh::{Mesh, hierarchy};
+use crate::physics::fresnel::fresnel_transmittance;
+use crate::physics::octahedral::octahedral_place;
+use crate::physics::refraction::refract_direction;
+use crate::physics::solid_angle::solid_angle;
+
+/// Places along each side of what is looked at, at most.
+const MOST_SIDE: u32 = 32;
+/// Fewest of them, where many objects share the rays.
+const LEAST_SIDE: u32 = 4;
+/// Rays of a scene for each thing that is looked for, as long as each object and light gets a few.
+const RAYS: f64 = 32_768.0;
+/// Directions around a light within an object, at most and at least.
+const DIRECTIONS: [f64; 2] = [64.0, 1024.0];
+/// How far behind its origin a ray still meets something, as a share of the object's size: what lies in the plane that rays start from
+/// counts.
+const BEHIND: f64 = 1e-6;
+
+/// Light that objects stop, of the lights of a scene whose windows are known.
+pub(super) struct Stopped<'a> {
+    facts: &'a SceneFacts,
+    meshes: &'a [Arc<Mesh>],
+    mesh_from_local: Vec<DAffine3>,
+    side: u32,
+    directions: u32,
+}
+
+impl<'a> Stopped<'a> {
+    /// `meshes` are those of the scene's objects, one each.
+    pub(super) fn new(facts: &'a SceneFacts, meshes: &'a [Arc<Mesh>]) -> Self {
+        let pairs = facts.objects.len() * facts.lights.len();
+        let side = (RAYS / pairs.max(1) as f64).sqrt() as u32;
+        let positions = facts.lights.iter().filter_map(|l| l.source.position_m());
+        let within: usize = positions
+            .map(|position_m| {
+                let around = facts.objects.iter().filter(|o| is_around(o, position_m));
+                around.count()
+            })
+            .sum();
+        let [fewest, most] = DIRECTIONS;
+        Self {
+            facts,
+            meshes,
+            mesh_from_local: facts
+                .objects
+                .iter()
+                .map(|object| object.local_from_mesh.inverse())
+                .collect(),
+            side: side.clamp(LEAST_SIDE, MOST_SIDE),
+            directions: (RAYS / within.max(1) as f64).clamp(fewest, most) as u32,
+        }
+    }
+
+    /// Flux onto the water, before its reflection, that the part of an object above the water at rest stops, all lights together, W; each
+    /// object for itself, as if the others were not there.
+    pub(super) fn above_water_w(&self, object: usize) -> [f64; 3] {
+        self.of_all_lights(|light| self.unit_flux_above(object, light))
+    }
+
+    /// Flux that one object after another stops although an object before it has stopped it already, all lights together, W; as it
+    /// goes under the water at rest, without what is absorbed.
+    pub(super) fn stopped_again_w(&self) -> [f64; 3] {
+        self.of_all_lights(|light| self.unit_flux_again(light))
+    }
+
+    /// Flux that a light within the bounds of an object sends onto it, W.
+    pub(super) fn onto_w(&self, object: usize, position_m: DVec3, power: [f64; 3]) -> [f64; 3] {
+        let onto = sphere(self.directions)
+            .filter(|&direction| self.meets(object, position_m, direction, EVERYWHERE_M))
+            .count();
+        let share = onto as f64 / f64::from(self.directions);
+        power.map(|i| 2.0 * TAU * i * share)
+    }
+
+    fn of_all_lights(&self, unit_flux: impl Fn(&LightFacts) -> f64) -> [f64; 3] {
+        let mut sum_w = [0.0; 3];
+        for light in &self.facts.lights {
+            let unit = unit_flux(light);
+            for (sum, power) in sum_w.iter_mut().zip(light.power) {
+                *sum += power * unit;
+            }
+        }
+        sum_w
+    }
+
+    /// Flux of a light of unit power that the dry part of an object keeps from the water, m² or sr.
+    fn unit_flux_above(&self, object: usize, light: &LightFacts) -> f64 {
+        let bounds = &self.facts.objects[object];
+        if let Source::Sun { to_light } = light.source {
+            return self.silhouette_m2(object, to_light, light.window);
+        }
+        let Some(rect) = shadow_on_water(bounds, light) else {
+            return 0.0;
+        };
+        let falls = |place: Place| {
+            let (to_light, reach_m) = place.to(&light.source)?;
+            self.meets(object, place.at_m, to_light, reach_m)
+                .then(|| place.unit_flux(&light.source))
+        };
+        places(rect, self.side).filter_map(falls).sum()
+    }
+
+    /// Area that the dry part of an object shows a sun, as far as its shadow falls on a piece of the water at rest, m².
+    fn silhouette_m2(&self, object: usize, to_light: DVec3, window: Rect) -> f64 {
+        let bounds = &self.facts.objects[object];
+        if bounds.max.y < 0.0 {
+            return 0.0;
+        }
+        let low = bounds.min.with_y(bounds.min.y.max(0.0));
+        let (u, v) = to_light.any_orthonormal_pair();
+        let seen =
+            corners(low, bounds.max).map(|p| DVec3::new(p.dot(u), p.dot(v), p.dot(to_light)));
+        let [min, max] = [
+            seen.into_iter().fold(DVec3::INFINITY, DVec3::min),
+            seen.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max),
+        ];
+        let before_m = min.z - BEHIND * (max - min).length();
+        let step_m = (max - min).truncate() / f64::from(self.side);
+        let shadowed = (0..self.side * self.side).filter(|k| {
+            let nth = DVec2::new(f64::from(k % self.side), f64::from(k / self.side)) + 0.5;
+            let at = min.truncate() + step_m * nth;
+            let mut from_m = u * at.x + v * at.y + to_light * before_m;
+            let foot_m = from_m - to_light * (from_m.y / to_light.y);
+            if from_m.y < 0.0 {
+                from_m = foot_m;
+            }
+            window.holds(DVec2::new(foot_m.x, foot_m.z))
+                && self.meets(object, from_m, to_light, EVERYWHERE_M)
+        });
+        shadowed.count() as f64 * step_m.element_product()
+    }
+
+    /// Flux of a light of unit power that is stopped a second and further times, m² or sr.
+    fn unit_flux_again(&self, light: &LightFacts) -> f64 {
+        let again = |from_m: DVec3, direction: DVec3| {
+            // What goes up ends at the water.
+            let reach_m = if direction.y > 0.0 {
+                -from_m.y.min(0.0) / direction.y
+            } else {
+                EVERYWHERE_M
+            };
+            let met = self
+                .facts
+                .wet_objects()
+                .filter(|&object| self.meets(object, from_m, direction, reach_m));
+            met.count().saturating_sub(1) as f64
+        };
+        let wet = self.facts.wet_objects().count().max(1) as f64;
+        let rays = (RAYS / (wet * self.facts.lights.len() as f64)).clamp(64.0, 4096.0);
+        let window = match (light.source, light.objects_window) {
+            (Source::Submerged { position_m }, _) => {
+                let directions = rays as u32;
+                let is_all = light.window.holds(DVec2::NEG_ONE) && light.window.holds(DVec2::ONE);
+                let followed = sphere(directions).filter(|&direction| {
+                    is_all || direction.y < 0.0 && light.window.holds(octahedral_place(direction))
+                });
+                let sum: f64 = followed.map(|direction| again(position_m, direction)).sum();
+                return sum * 2.0 * TAU / f64::from(directions);
+            }
+            (_, Some(objects)) => objects.within(light.window),
+            (_, None) => None,
+        };
+        let Some(window) = window else { return 0.0 };
+        let side = (rays.sqrt() as u32).clamp(8, 2 * MOST_SIDE);
+        let falls = |place: Place| {
+            let (to_light, _) = place.to(&light.source)?;
+            let direction = refract_direction(-to_light, DVec3::Y, self.facts.ior)?;
+            let enters = fresnel_transmittance(to_light.y, self.facts.ior);
+            Some(again(place.at_m, direction) * enters * place.unit_flux(&light.source))
+        };
+        places(window, side).filter_map(falls).sum()
+    }
+
+    /// Whether a ray meets an object before `reach_m`; `direction` has unit length.
+    fn meets(&self, object: usize, from_m: DVec3, direction: DVec3, reach_m: f64) -> bool {
+        let mesh = &self.meshes[object];
+        let mesh_from_local = &self.mesh_from_local[object];
+        let along = mesh_from_local.transform_vector3(direction);
+        let per_m = along.length();
+        let behind = BEHIND * f64::from((mesh.max_m - mesh.min_m).length());
+        let hit = hierarchy::first_hit(
+            &mesh.hierarchy,
+            &mesh.triangles,
+            mesh_from_local.transform_point3(from_m).as_vec3(),
+            (along / per_m).as_vec3(),
+            -behind as f32,
+            (reach_m * per_m).min(f64::from(f32::MAX)) as f32,
+        );
+        hit.is_some()
+    }
+}
+
+/// Whether a place is within the bounds of an object.
+pub(super) fn is_around(object: &ObjectFacts, position_m: DVec3) -> bool {
+    position_m.cmpge(object.min).all() && position_m.cmple(object.max).all()
+}
+
+/// A small rectangle of the water at rest.
+#[derive(Clone, Copy)]
+struct Place {
+    at_m: DVec3,
+    rect: Rect,
+}
+
+impl Place {
+    /// Unit direction to a light above the water, and how far it is, m.
+    fn to(&self, source: &Source) -> Option<(DVec3, f64)> {
+        match *source {
+            Source::Sun { to_light } => Some((to_light, EVERYWHERE_M)),
+            Source::Point { position_m } => {
+                let way = position_m - self.at_m;
+                (way.y > 0.0).then(|| (way.normalize(), way.length()))
+            }
+            Source::Submerged { .. } => None,
+        }
+    }
+
+    /// Flux of a light of unit power onto it, m² of a sun, sr of a point light.
+    fn unit_flux(&self, source: &Source) -> f64 {
+        match *source {
+            Source::Sun { to_light } => self.rect.size().element_product() * to_light.y,
+            Source::Point { position_m } => rect_sr(self.rect, position_m),
+            Source::Submerged { .. } => 0.0,
+        }
+    }
+}
+
+/// Solid angle of a rectangle of the water at rest, seen from `position_m`, sr.
+pub(super) fn rect_sr(rect: Rect, position_m: DVec3) -> f64 {
+    let corner = |p: DVec2| DVec3::new(p.x, 0.0, p.y) - position_m;
+    let (low, high) = (corner(rect.min), corner(rect.max));
+    let size = rect.size();
+    let (x, z) = (DVec3::X * size.x, DVec3::Z * size.y);
+    solid_angle(low, z, x).abs() + solid_angle(high, -z, -x).abs()
+}
+
+/// The even grid of places that make up a rectangle of the water at rest.
+fn places(rect: Rect, side: u32) -> impl Iterator<Item = Place> {
+    let step_m = rect.size() / f64::from(side);
+    (0..side * side).map(move |k| {
+        let at = DVec2::new(f64::from(k % side), f64::from(k / side));
+        let min = rect.min + step_m * at;
+        let middle = min + 0.5 * step_m;
+        Place {
+            at_m: DVec3::new(middle.x, 0.0, middle.y),
+            rect: Rect {
+                min,
+                max: min + step_m,
+            },
+        }
+    })
+}
+
+/// Directions evenly all around (Fibonacci lattice).
+fn sphere(count: u32) -> impl Iterator<Item = DVec3> {
+    let golden_turn = TAU * (1.0 - 1.0 / 1.618_033_988_749_895);
+    (0..count).map(move |i| {
+        let y = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
+        let across = (1.0 - y * y).sqrt();
+        let (sin, cos) = (golden_turn * f64::from(i)).sin_cos();
+        DVec3::new(across * cos, y, across * sin)
+    })
+}
+
+/// The piece of a point light's window in which the shadow of an object's dry part lies; `None` where there is none.
+fn shadow_on_water(object: &ObjectFacts, light: &LightFacts) -> Option<Rect> {
+    let Source::Point { position_m } = light.source else {
+        return None;
+    };
+    let low_m = object.min.y.max(0.0);
+    if object.max.y < 0.0 || low_m >= position_m.y {
+        return None;
+    }
+    if object.max.y >= position_m.y {
+        // What reaches up beside the light may hide it from anywhere.
+        return Some(light.window);
+    }
+    let shadow = corners(object.min.with_y(low_m), object.max)
+        .into_iter()
+        .map(|p| {
+            let from = DVec2::new(position_m.x, position_m.z);
+            let longer = position_m.y / (position_m.y - p.y);
+            let foot = from + (DVec2::new(p.x, p.z) - from) * longer;
+            Rect {
+                min: foot,
+                max: foot,
+            }
+        })
+        .reduce(Rect::including)?;
+    shadow.within(light.window)
+}

@@ -1,0 +1,133 @@
+//! Which ways of light that are not followed a scene could have: what the waves at their steepest and highest allow.
+
+use glam::{DVec2, DVec3};
+
+use super::source::Source;
+use super::{LightFacts, SceneFacts};
+use crate::physics::refraction::{normal_from_slope, refract_direction};
+use crate::stats::Warning;
+use crate::waves::WaterSurface;
+
+/// Directions in which the steepest slopes are looked at.
+const SLOPES: u32 = 64;
+/// Parts of the steepest slopes that are looked at too.
+const PARTS: u32 = 8;
+/// What is within so much of meeting the water again may do so: between the slopes that are looked at there are others.
+const NEARLY: f64 = 0.9;
+
+/// Code of the warning that some slopes look away from a light.
+pub const WAVES_SHADE_WAVES: &str = "waves_shade_waves";
+
+/// The warning about a light from which some slopes look away; how much flux that is only the frame knows.
+pub fn waves_shade_waves(light: u32) -> Warning {
+    Warning {
+        pointer: Some(format!("/lights/{light}")),
+        ..Warning::new(
+            WAVES_SHADE_WAVES,
+            "some wave slopes look away from the light; the shadows of waves on waves are not simulated, so that water in them is lit",
+        )
+    }
+}
+
+/// Whether slopes of these waves can look away from a light.
+pub(super) fn looks_away(surface: &WaterSurface, light: &LightFacts) -> bool {
+    if surface.max_slope() == 0.0 {
+        return false;
+    }
+    match light.source {
+        Source::Sun { to_light } => {
+            let sideways = DVec2::new(to_light.x, to_light.z);
+            surface.max_slope_along(sideways.normalize_or_zero()) * sideways.length() > to_light.y
+        }
+        Source::Point { position_m } => {
+            let foot_m = DVec2::new(position_m.x, position_m.z);
+            let farthest_m = (light.window.min - foot_m)
+                .abs()
+                .max((light.window.max - foot_m).abs())
+                .length();
+            surface.max_slope() * farthest_m > position_m.y - surface.max_height_m()
+        }
+        Source::Submerged { .. } => false,
+    }
+}
+
+/// Whether a ray that these waves refract can come out of the water again: it has to be flatter than the steepest slope that could
+/// fall away under it.
+fn may_leave_again(surface: &WaterSurface, light: &LightFacts, ior: f64) -> bool {
+    let rim = surface.rim_slopes(SLOPES);
+    let to_lights = match light.source {
+        Source::Sun { to_light } => vec![to_light],
+        // Between waves rays may come from anywhere, also from below.
+        Source::Point { position_m } if position_m.y <= surface.max_height_m() => {
+            return surface.max_slope() > 0.0;
+        }
+        Source::Point { position_m } => {
+            let window = light.window;
+            let near = DVec2::new(position_m.x, position_m.z).clamp(window.min, window.max);
+            let middle = (window.min + window.max) * 0.5;
+            let (low, high) = (window.min, window.max);
+            [low.x, near.x, middle.x, high.x]
+                .into_iter()
+                .flat_map(|x| [low.y, near.y, middle.y, high.y].map(|z| DVec3::new(x, 0.0, z)))
+                .map(|place_m| (position_m - place_m).normalize_or(DVec3::Y))
+                .collect()
+        }
+        Source::Submerged { .. } => return false,
+    };
+    let slopes = rim.iter().flat_map(|&slope| {
+        (1..=PARTS).map(move |part| slope * (f64::from(part) / f64::from(PARTS)))
+    });
+    slopes.into_iter().any(|slope| {
+        let normal = normal_from_slope(slope.x, slope.y);
+        to_lights.iter().any(|&to_light| {
+            if normal.dot(to_light) <= 0.0 {
+                return false;
+            }
+            let Some(way) = refract_direction(-to_light, normal, ior) else {
+                return false;
+            };
+            let aside = DVec2::new(way.x, way.z);
+            let falls = surface.max_slope_along(aside.normalize_or_zero());
+            aside.length() * falls >= NEARLY * -way.y
+        })
+    })
+}
+
+/// Ways of light that the waves make possible and that are not followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UnfollowedWays {
+    /// Slopes look away from a light.
+    pub turned: bool,
+    /// Rays come out of the water again.
+    pub again: bool,
+    /// Troughs lie below the floor.
+    pub bared: bool,
+}
+
+impl UnfollowedWays {
+    /// Them in words; empty where there are none.
+    pub fn words(self) -> Vec<&'static str> {
+        let all = [
+            (self.turned, "slopes that look away from it"),
+            (self.again, "rays that come out of the water again"),
+            (self.bared, "troughs below the floor"),
+        ];
+        all.into_iter()
+            .filter_map(|(is, words)| is.then_some(words))
+            .collect()
+    }
+}
+
+impl SceneFacts {
+    /// Which ways of light the waves of this scene make possible that are not followed.
+    pub fn unfollowed_ways(&self) -> UnfollowedWays {
+        let any = |may: &dyn Fn(&LightFacts) -> bool| self.lights.iter().any(may);
+        let floor = self.floor.as_ref();
+        UnfollowedWays {
+            turned: any(&|light| looks_away(&self.surface, light)),
+            again: any(&|light| may_leave_again(&self.surface, light, self.ior)),
+            bared: floor.is_some_and(|floor| self.surface.max_height_m() > -floor.y_m)
+                && any(&|light| !matches!(light.source, Source::Submerged { .. })),
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! What is left out, sub-sampled or not simulated, as far as a scene tells before its frame, with the flux concerned; what only the
+//! frame can measure is put to it by the frame.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::source::Source;
+use super::stopped::{self, Stopped};
+use super::unfollowed;
+use super::window::Rect;
+use super::{LightFacts, SceneFacts};
+use crate::mesh::{Mesh, mtl, repair};
+use crate::scene::ResolvedScene;
+use crate::stats::Warning;
+
+/// Cells along the shortest wave below which caustics are washed out.
+const CELLS_PER_WAVE: f64 = 8.0;
+/// Water cells above the water within which a point light's rays spread too fast for the grid.
+const CLOSE_CELLS: f64 = 4.0;
+
+/// Share of the largest face of an object's box below which what is seen of it is rounding.
+const NOTHING: f64 = 1e-6;
+/// Least height of a point light over the water at rest that its solid angle is reckoned with, as a share of how close cells count.
+const LEAST_HEIGHT: f64 = 1e-9;
+
+/// Code of the warning that scattered light is lost; its flux is known after the frame.
+pub const SCATTERING_NOT_FOLLOWED: &str = "scattering_not_followed";
+/// Code of the warning that cells are coarse for the waves; its flux is known after the frame.
+pub const WAVES_UNDERSAMPLED: &str = "waves_undersampled";
+
+fn warning(code: &str, message: impl Into<String>, pointer: impl Into<String>) -> Warning {
+    Warning {
+        pointer: Some(pointer.into()),
+        ..Warning::new(code, message)
+    }
+}
+
+fn with_flux(warning: Warning, flux_w: [f64; 3]) -> Warning {
+    Warning {
+        flux_w: Some(flux_w),
+        ..warning
+    }
+}
+
+/// All that a scene tells before its frame.
+pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warning> {
+    let meshes = &resolved.meshes;
+    let stopped = Stopped::new(facts, meshes);
+    let mut all = Vec::new();
+    all.extend(scattering(&resolved.scene.water.scattering_per_m));
+    all.extend(mended_meshes(facts, meshes));
+    all.extend(dry_parts(facts, &stopped));
+    all.extend(thin_objects(facts, meshes));
+    all.extend(planes(facts, &stopped));
+    all.extend(coarse_cells(facts));
+    for light in &facts.lights {
+        all.extend(from_below(light));
+        all.extend(within_objects(facts, light, &stopped));
+        all.extend(close_to_water(facts, light));
+        if unfollowed::looks_away(&facts.surface, light) {
+            all.push(unfollowed::waves_shade_waves(light.index));
+        }
+    }
+    all
+}
+
+fn scattering(scattering_per_m: &[f64; 3]) -> Option<Warning> {
+    scattering_per_m.iter().any(|&b| b > 0.0).then(|| {
+        warning(
+            SCATTERING_NOT_FOLLOWED,
+            "light scattered out of the beams is counted as lost; light scattered into the picture is not simulated",
+            "/water/scattering_per_m",
+        )
+    })
+}
+
+/// What was left out of meshes or clamped when they were read; once for each mesh, at the first object of it.
+fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
+    let is_first = |index: usize| {
+        let id = &meshes[index].id;
+        meshes[..index].iter().all(|mesh| mesh.id != *id)
+    };
+    let shows_material = |id: &str| {
+        let mut same = facts.objects.iter().filter(|object| object.mesh == id);
+        facts.camera.is_some() && same.any(|object| object.albedo.is_none())
+    };
+    let shows_material = &shows_material;
+    let of_object = |index: usize| {
+        let told = meshes[index].warnings.iter();
+        told.filter_map(move |w| {
+            let at = format!("/objects/{index}/mesh");
+            let found = warning(&w.code, w.message.clone(), at);
+            if repair::LEFT_OUT.contains(&w.code.as_str()) {
+                // Neither what has no area nor what is there twice stops any light.
+                Some(with_flux(found, [0.0; 3]))
+            } else {
+                (w.code == mtl::CLAMPED && shows_material(&meshes[index].id)).then_some(found)
+            }
+        })
+    };
+    (0..meshes.len())
+        .filter(|&index| is_first(index))
+        .flat_map(of_object)
+        .collect()
+}
+
+/// Objects above the water, or reaching out of it: their shadows on the water.
+fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
+    let mut through_water = facts.lights.iter().filter(|light| !light.is_submerged());
+    if through_water.next().is_none() {
+        return Vec::new();
+    }
+    let of_object = |(index, object): (usize, &super::placement::ObjectFacts)| {
+        let at = format!("/objects/{index}");
+        if !object.wet {
+            let found = warning(
+                "dry_object_casts_no_shadow",
+                "the object is above the water; its shadow on the water is not simulated",
+                at,
+            );
+            return Some(with_flux(found, stopped.above_water_w(index)));
+        }
+        if object.max.y <= 0.0 {
+            return None;
+        }
+        let found = warning(
+            "object_cuts_surface",
+            "the object reaches through the water at rest; the shadow of its dry part on the water is not simulated",
+            at,
+        );
+        let flux_w = stopped.above_water_w(index);
+        // What stays below the highest crests may never be seen out of the water.
+        let is_clear = object.max.y > facts.surface.max_height_m();
+        (is_clear || flux_w != [0.0; 3]).then(|| with_flux(found, flux_w))
+    };
+    facts
+        .objects
+        .iter()
+        .enumerate()
+        .filter_map(of_object)
+        .collect()
+}
+
+/// Objects whose bounds are thinner than a texel of their level map somewhere across the light.
+fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
+    let of_object = |index: usize| {
+        let object = &facts.objects[index];
+        let mut flux_w = [0.0; 3];
+        let mut thinnest: Option<(f64, f64)> = None;
+        for light in &facts.lights {
+            let Some(level_box) = &light.boxes[index] else {
+                continue;
+            };
+            let texel_m = level_box.density_per_flux.powf(-0.5);
+            let across = object.across(&meshes[index], level_box.axis);
+            // A sheet that is seen from its edge stops nothing.
+            if across.width_m >= texel_m || across.area_m2 <= NOTHING * across.largest_m2 {
+                continue;
+            }
+            let middle_m = object.wet_middle();
+            let unit = light.source.most_onto(middle_m, across.area_m2, facts.ior);
+            for (sum, power) in flux_w.iter_mut().zip(light.power) {
+                *sum += power * unit;
+            }
+            if thinnest.is_none_or(|(width_m, _)| across.width_m < width_m) {
+                thinnest = Some((across.width_m, texel_m));
+            }
+        }
+        let (width_m, texel_m) = thinnest?;
+        let helps = if facts.detail_of(index) < 1.0 {
+            "a smaller quality.level_of_detail and more quality.level_map_texels help"
+        } else {
+            "more quality.level_map_texels help"
+        };
+        let message = format!(
+            "across the light the object is {width_m:.1e} m thin, less than a texel of its level map of {texel_m:.1e} m: part of the light that it stops, all of it at most, gets through; {helps}"
+        );
+        let at = format!("/objects/{index}");
+        Some(with_flux(
+            warning("object_thinner_than_texel", message, at),
+            flux_w,
+        ))
+    };
+    facts.wet_objects().filter_map(of_object).collect()
+}
+
+/// What placement by planes leaves out.
+fn planes(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
+    let mut all = Vec::new();
+    let wet = facts.wet_objects().count();
+    if !facts.quality.has_planes() || facts.lights.is_empty() {
+        return all;
+    }
+    if wet > 1 {
+        let found = warning(
+            "planes_ignore_other_objects",
+            "planes know nothing of other objects: what one object stops lights the others all the same",
+            "/quality/placement",
+        );
+        all.push(with_flux(found, stopped.stopped_again_w()));
+    }
+    if wet > 0 && facts.quality.layers > 1 {
+        all.push(warning(
+            "planes_light_the_first_layer",
+            "planes light what the light direction sees first; further layers stay dark",
+            "/quality/layers",
+        ));
+    }
+    all
+}
+
+impl SceneFacts {
+    /// Whether the cells of a light's grid are too large for the shortest wave.
+    pub fn is_undersampled(&self, light: &LightFacts) -> bool {
+        cells_needed(self, light) > f64::from(self.quality.water_cells)
+    }
+}
+
+/// Cells along a side of a light's grid that the shortest wave wants.
+fn cells_needed(facts: &SceneFacts, light: &LightFacts) -> f64 {
+    let widest_m = light.span_m(facts.quality.water_cells);
+    (widest_m * CELLS_PER_WAVE / facts.surface.shortest_wave_m()).ceil()
+}
+
+/// Where a cell of the water is too large for the shortest wave.
+fn coarse_cells(facts: &SceneFacts) -> Option<Warning> {
+    let light = facts
+        .lights
+        .iter()
+        .filter(|light| facts.is_undersampled(light))
+        .max_by(|a, b| cells_needed(facts, a).total_cmp(&cells_needed(facts, b)))?;
+    let cells = facts.quality.water_cells;
+    Some(warning(
+        WAVES_UNDERSAMPLED,
+        format!(
+            "a water cell of {:.3} m is coarse for the shortest wave of {:.3} m; {:.0} cells would do",
+            light.span_m(cells) / f64::from(cells),
+            facts.surface.shortest_wave_m(),
+            cells_needed(facts, light)
+        ),
+        "/quality/water_cells",
+    ))
+}
+
+fn from_below(light: &LightFacts) -> Option<Warning> {
+    light.is_submerged().then(|| {
+        let found = warning(
+            "light_from_below_not_followed",
+            "the light is under water; what it sends up to the surface, half of its power at most, is not followed into the air or back down",
+            format!("/lights/{}", light.index),
+        );
+        with_flux(found, light.power.map(|i| std::f64::consts::TAU * i))
+    })
+}
+
+fn within_objects(facts: &SceneFacts, light: &LightFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
+    let Some(position_m) = light.source.position_m() else {
+        return Vec::new();
+    };
+    let of_object = |index: usize| {
+        let found = warning(
+            "light_within_object",
+            format!(
+                "the light is within the bounds of object {index}; of what surrounds it only the side that the object's level map shows is lit, by part of the flux that goes to the object"
+            ),
+            format!("/lights/{}", light.index),
+        );
+        with_flux(found, stopped.onto_w(index, position_m, light.power))
+    };
+    facts
+        .wet_objects()
+        .filter(|&index| stopped::is_around(&facts.objects[index], position_m))
+        .map(of_object)
+        .collect()
+}
+
+fn close_to_water(facts: &SceneFacts, light: &LightFacts) -> Option<Warning> {
+    let Source::Point { position_m } = light.source else {
+        return None;
+    };
+    let finest_m = light.grid.places.size().min_element() / f64::from(facts.quality.water_cells);
+    let close_m = CLOSE_CELLS * finest_m;
+    if light.window.distance_m(position_m) >= close_m {
+        return None;
+    }
+    let foot_m = DVec2::new(position_m.x, position_m.z);
+    let near = Rect {
+        min: foot_m,
+        max: foot_m,
+    };
+    let from_m = DVec3::new(
+        position_m.x,
+        position_m.y.max(LEAST_HEIGHT * close_m),
+        position_m.z,
+    );
+    let unit = near
+        .grown(close_m)
+        .within(light.window)
+        .map_or(0.0, |rect| stopped::rect_sr(rect, from_m));
+    let found = warning(
+        "light_close_to_water",
+        format!(
+            "the light is {:.1e} m above the water at rest, less than {CLOSE_CELLS} of the smallest water cells of {finest_m:.1e} m: where the light of the cells around its foot goes is coarse",
+            position_m.y
+        ),
+        format!("/lights/{}", light.index),
+    );
+    Some(with_flux(found, light.power.map(|i| i * unit)))
+}

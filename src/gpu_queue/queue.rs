@@ -1,0 +1,245 @@
+//! Admission, deadline and cancellation: the callers' side of the GPU thread.
+
+use std::io;
+use std::sync::mpsc::SyncSender;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use tokio::sync::{Semaphore, oneshot, watch};
+use tokio::time::timeout_at;
+use tokio_util::sync::CancellationToken;
+
+use super::backend::RenderBackend;
+use super::error::JobError;
+use super::job::{Job, JobContext, Typed};
+use super::status::{GpuState, GpuStatus};
+use super::worker::{Forgotten, Worker};
+use crate::cache::{WarmUp, WarmedMap};
+use crate::frame::Frame;
+use crate::gpu::GpuError;
+use crate::mesh::Mesh;
+use crate::plan::Plan;
+use crate::render::{RenderError, SelfCheck};
+use crate::scene::ResolvedScene;
+
+/// Name of the GPU thread.
+pub const THREAD_NAME: &str = "caustica-gpu";
+
+/// Size and patience of the queue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QueueSettings {
+    /// Jobs that may wait while one runs; one more is refused.
+    pub waiting: usize,
+    /// Time from arrival after which a caller is told that the deadline passed.
+    pub deadline: Duration,
+}
+
+/// A handle on the GPU thread; clones share it. The thread ends with [`GpuQueue::close`] or with the last handle.
+#[derive(Clone, Debug)]
+pub struct GpuQueue {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    settings: QueueSettings,
+    /// Jobs that wait or run: `waiting` + 1 places.
+    places: Arc<Semaphore>,
+    /// The right to hand a job to the thread: 1 permit.
+    thread: Arc<Semaphore>,
+    sender: Mutex<Option<SyncSender<Job>>>,
+    join: Mutex<Option<JoinHandle<()>>>,
+    status: watch::Receiver<GpuStatus>,
+    forgotten: Forgotten,
+    closing: CancellationToken,
+}
+
+impl GpuQueue {
+    /// Starts the thread, which builds its backend with `factory`, and again after each loss.
+    ///
+    /// # Errors
+    /// When the operating system refuses a thread.
+    pub fn start<F>(settings: QueueSettings, factory: F) -> io::Result<Self>
+    where
+        F: FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send + 'static,
+    {
+        // One job at most is on its way, since a sender holds the thread's only permit.
+        let (sender, jobs) = std::sync::mpsc::sync_channel(1);
+        let (publish, status) = watch::channel(GpuStatus::default());
+        let forgotten = Forgotten::default();
+        let worker = Worker::new(Box::new(factory), jobs, publish, Arc::clone(&forgotten));
+        let join = std::thread::Builder::new()
+            .name(THREAD_NAME.to_owned())
+            .spawn(move || worker.run())?;
+        Ok(Self {
+            shared: Arc::new(Shared {
+                settings,
+                places: Arc::new(Semaphore::new(settings.waiting.saturating_add(1))),
+                thread: Arc::new(Semaphore::new(1)),
+                sender: Mutex::new(Some(sender)),
+                join: Mutex::new(Some(join)),
+                status,
+                forgotten,
+                closing: CancellationToken::new(),
+            }),
+        })
+    }
+
+    /// Renders. The time from `arrival` until the thread took the job up goes into `stats.time_ms.queue`.
+    ///
+    /// # Errors
+    /// [`JobError`]; dropping the future cancels the job, and a job that has not started never does.
+    pub async fn render(&self, scene: ResolvedScene, arrival: Instant) -> Result<Frame, JobError> {
+        self.submit(arrival, move |backend, context| {
+            let mut frame = backend.render(&scene, context.cancel)?;
+            frame.stats.time_ms.queue = context.queued.as_secs_f64() * 1e3;
+            Ok(frame)
+        })
+        .await
+    }
+
+    /// Plans with what is cached now; nothing runs on the GPU but the looks by which dials are chosen.
+    ///
+    /// # Errors
+    /// As [`GpuQueue::render`].
+    pub async fn plan(&self, scene: ResolvedScene, arrival: Instant) -> Result<Plan, JobError> {
+        self.submit(arrival, move |backend, context| {
+            backend.plan(&scene, context.cancel)
+        })
+        .await
+    }
+
+    /// Builds level maps of a mesh for frames to come, and says of each sun what is ready.
+    ///
+    /// # Errors
+    /// As [`GpuQueue::render`]; level maps that were finished by then stay.
+    pub async fn warm(
+        &self,
+        mesh: Arc<Mesh>,
+        wanted: WarmUp,
+        arrival: Instant,
+    ) -> Result<Vec<WarmedMap>, JobError> {
+        self.submit(arrival, move |backend, context| {
+            backend.warm(&mesh, &wanted, context.cancel)
+        })
+        .await
+    }
+
+    /// Compares this machine with float64 physics once more.
+    ///
+    /// # Errors
+    /// As [`GpuQueue::render`].
+    pub async fn self_check(&self, arrival: Instant) -> Result<SelfCheck, JobError> {
+        self.submit(arrival, |backend, _| {
+            backend.self_check().map_err(RenderError::from)
+        })
+        .await
+    }
+
+    /// Frees what is cached for a mesh: before the next job, or within about a second; and what jobs that were handed in before
+    /// still build for it, after them. Never waits and never fails.
+    pub fn forget_mesh(&self, id: &str) {
+        lock(&self.shared.forgotten).insert(id.to_owned(), Instant::now());
+    }
+
+    /// What is known about the device now; never waits for a job.
+    pub fn status(&self) -> GpuStatus {
+        self.shared.status.borrow().clone()
+    }
+
+    /// The same, to be waited on.
+    pub fn watch(&self) -> watch::Receiver<GpuStatus> {
+        self.shared.status.clone()
+    }
+
+    /// Size and patience.
+    pub fn settings(&self) -> QueueSettings {
+        self.shared.settings
+    }
+
+    /// Jobs that wait or run now.
+    pub fn depth(&self) -> usize {
+        (self.shared.settings.waiting + 1).saturating_sub(self.shared.places.available_permits())
+    }
+
+    /// Cancels what runs, refuses what waits, and blocks until the thread has ended and the device is freed.
+    pub fn close(&self) {
+        self.shared.closing.cancel();
+        self.shared.places.close();
+        self.shared.thread.close();
+        drop(lock(&self.shared.sender).take());
+        let join = lock(&self.shared.join).take();
+        if let Some(join) = join {
+            // A panic outside the guarded calls has been printed by the panic hook; there is nothing left to end.
+            let _ = join.join();
+        }
+    }
+
+    async fn submit<T, F>(&self, arrival: Instant, call: F) -> Result<T, JobError>
+    where
+        T: Send + 'static,
+        F: FnMut(&mut dyn RenderBackend, &JobContext<'_>) -> Result<T, RenderError>
+            + Send
+            + 'static,
+    {
+        let shared = &self.shared;
+        let handed_in = Instant::now();
+        if let GpuState::Failed(why) = &shared.status.borrow().state {
+            return Err(JobError::Unavailable(why.clone()));
+        }
+        let deadline = (arrival + shared.settings.deadline).into();
+        let late = |_| JobError::DeadlinePassed {
+            deadline_s: shared.settings.deadline.as_secs_f64(),
+        };
+
+        // A place, now or never.
+        let place = Arc::clone(&shared.places)
+            .try_acquire_owned()
+            .map_err(|_| self.refusal())?;
+        // The thread, until the deadline. A future dropped here has queued nothing.
+        let thread = timeout_at(deadline, Arc::clone(&shared.thread).acquire_owned())
+            .await
+            .map_err(late)?
+            .map_err(|_| JobError::Cancelled)?;
+
+        let cancel = shared.closing.child_token();
+        let guard = cancel.clone().drop_guard();
+        let (reply, answer) = oneshot::channel();
+        let job = Job {
+            work: Box::new(Typed::new(call, reply)),
+            cancel,
+            arrival,
+            handed_in,
+            _permits: [place, thread],
+        };
+        match lock(&shared.sender).as_ref() {
+            Some(sender) => sender.try_send(job).map_err(|_| JobError::Cancelled)?,
+            None => return Err(JobError::Cancelled),
+        }
+        let result = timeout_at(deadline, answer)
+            .await
+            .map_err(late)?
+            .unwrap_or(Err(JobError::Cancelled));
+        guard.disarm();
+        result
+    }
+
+    /// Why there is no place: closed, or full.
+    fn refusal(&self) -> JobError {
+        let waiting = self.shared.settings.waiting;
+        if self.shared.places.is_closed() {
+            return JobError::Cancelled;
+        }
+        let seconds = self.shared.status.borrow().job_s * waiting.max(1) as f64;
+        JobError::QueueFull {
+            waiting,
+            retry_after_s: (seconds.ceil() as u64).clamp(1, 60),
+        }
+    }
+}
+
+/// A lock whose poison is of no interest: the values are replaced whole.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,268 @@
+//! Rendering with the checks that hold for every picture.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+use tokio_util::sync::CancellationToken;
+
+use super::Settings;
+use super::case::{Case, Failure, Outcome, Verdict};
+use super::truths::Truths;
+use crate::assets::MeshStore;
+use crate::config::Limits;
+use crate::frame::Frame;
+use crate::mesh::Mesh;
+use crate::render::{RenderError, Renderer};
+use crate::scene::{LayerName, ResolvedScene, Scene, SceneError, resolve};
+use crate::stats::{Stats, Warning};
+
+/// Most that an energy account may be open by.
+const MOST_CLOSURE: f64 = 1e-5;
+
+/// A renderer, and what was seen on the way.
+#[derive(Debug)]
+pub struct Bench<'a> {
+    /// `None` where a case is only asked for its scene.
+    renderer: Option<&'a mut Renderer>,
+    pub(super) truths: &'a mut Truths,
+    scene: Option<Value>,
+    settings: Settings,
+    meshes: MeshStore,
+    closure: f64,
+    warnings: BTreeMap<String, Option<f64>>,
+    picture: Option<Frame>,
+}
+
+impl<'a> Bench<'a> {
+    pub(super) fn new(
+        renderer: Option<&'a mut Renderer>,
+        truths: &'a mut Truths,
+        settings: Settings,
+    ) -> Self {
+        Self {
+            renderer,
+            truths,
+            scene: None,
+            settings,
+            meshes: MeshStore::default(),
+            closure: 0.0,
+            warnings: BTreeMap::new(),
+            picture: None,
+        }
+    }
+
+    /// The scene that the case began with.
+    pub(super) fn into_scene(self) -> Option<Value> {
+        self.scene
+    }
+
+    pub(super) fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    /// The renderer, for what is not just rendering a scene.
+    pub(super) fn renderer(&mut self) -> Result<&mut Renderer, Failure> {
+        self.renderer.as_deref_mut().ok_or_else(nothing_renders)
+    }
+
+    /// A scene; `objects[i].mesh` is the text of an OBJ.
+    pub(super) fn scene(&mut self, mut value: Value) -> Result<ResolvedScene, Failure> {
+        if self.renderer.is_none() {
+            self.scene.get_or_insert(value);
+            return Err(nothing_renders());
+        }
+        let mut meshes: Vec<std::sync::Arc<Mesh>> = Vec::new();
+        let objects = value.get_mut("objects").and_then(Value::as_array_mut);
+        for object in objects.into_iter().flatten() {
+            let text = object["mesh"].as_str().unwrap_or_default().to_owned();
+            let mesh = self
+                .meshes
+                .insert_obj(text.as_bytes(), None)
+                .map_err(|error| Failure::Check(format!("the mesh is refused: {error}")))?
+                .mesh;
+            object["mesh"] = Value::from(mesh.id.clone());
+            meshes.push(mesh);
+        }
+        let scene = Scene::from_value(value)?;
+        let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
+        Ok(resolve(scene, &Limits::default(), find)?)
+    }
+
+    /// Renders a scene twice: both times the same bits, finite, and every account closed.
+    pub(super) fn render(&mut self, value: Value) -> Result<Frame, Failure> {
+        let resolved = self.scene(value)?;
+        self.render_resolved(&resolved)
+    }
+
+    pub(super) fn render_resolved(&mut self, resolved: &ResolvedScene) -> Result<Frame, Failure> {
+        let Some(renderer) = self.renderer.as_deref_mut() else {
+            return Err(nothing_renders());
+        };
+        let never = CancellationToken::new();
+        let frame = renderer.render(resolved, &never)?;
+        let again = renderer.render(resolved, &never)?;
+        for (name, layer) in &frame.layers {
+            if let Some(at) = layer.data.iter().position(|v| !v.is_finite()) {
+                return Err(Failure::Check(format!(
+                    "{name:?} is not finite at value {at}"
+                )));
+            }
+            let bits = |frame: &Frame| -> Vec<u32> {
+                frame.layers[name]
+                    .data
+                    .iter()
+                    .map(|v| v.to_bits())
+                    .collect()
+            };
+            if bits(&frame) != bits(&again) {
+                return Err(Failure::Check(format!(
+                    "{name:?} differs from one time to the next"
+                )));
+            }
+        }
+        if let Some(unsaid) = unsaid(&frame.stats) {
+            return Err(Failure::Check(unsaid));
+        }
+        // Planes do not conserve energy; that they say so, and how much it is, was checked.
+        let by_planes = !frame.stats.planes.is_empty();
+        for account in frame.stats.energy.iter().filter(|_| !by_planes) {
+            self.closure = self.closure.max(account.closure);
+            let is_closed = account.closure <= MOST_CLOSURE;
+            if !is_closed {
+                return Err(Failure::Check(format!(
+                    "the energy account of light {} is open by {:e}",
+                    account.light, account.closure
+                )));
+            }
+        }
+        for warning in &frame.stats.warnings {
+            let flux_w = warning
+                .flux_w
+                .map(|flux| flux.iter().copied().fold(0.0, f64::max));
+            let known = self.warnings.entry(warning.code.clone()).or_default();
+            *known = match (*known, flux_w) {
+                (Some(a), Some(b)) => Some(a.max(b)),
+                (a, b) => a.or(b),
+            };
+        }
+        let shows = |name| frame.layers.contains_key(&name) && frame.width.min(frame.height) > 1;
+        if shows(LayerName::Radiance) || shows(LayerName::Irradiance) {
+            self.picture = Some(frame.clone());
+        }
+        Ok(frame)
+    }
+
+    /// The map of a scene, channel by channel, W/m².
+    pub(super) fn map(&mut self, value: Value) -> Result<Vec<[f64; 3]>, Failure> {
+        let frame = self.render(value)?;
+        Ok(texels(&frame, LayerName::Irradiance))
+    }
+
+    /// Whether a warning came with any picture so far.
+    pub(super) fn was_warned_of(&self, code: &str) -> bool {
+        self.warnings.contains_key(code)
+    }
+
+    /// The scene must be refused with a finding at `pointer`: 0, or 1 where it is not.
+    pub(super) fn refused_at(&mut self, value: Value, pointer: &str) -> Result<f64, Failure> {
+        match self.render(value) {
+            Err(Failure::Scene(SceneError { issues })) => {
+                let found = issues
+                    .iter()
+                    .any(|issue| issue.pointer == pointer && !issue.accepted.is_empty());
+                Ok(if found { 0.0 } else { 1.0 })
+            }
+            Err(Failure::Render(RenderError::OverBudget {
+                needed_bytes,
+                budget_bytes,
+                ..
+            })) if pointer.is_empty() => Ok(if needed_bytes > budget_bytes {
+                0.0
+            } else {
+                1.0
+            }),
+            Err(other) => Err(other),
+            Ok(_) => Err(Failure::Check("it is not refused".to_owned())),
+        }
+    }
+
+    pub(super) fn outcome(self, case: &'static Case, result: Result<f64, Failure>) -> Outcome {
+        let (figure, failure) = match result {
+            // NaN is never under a bound.
+            Ok(figure) if figure <= case.bound => (Some(figure), None),
+            Ok(figure) => (
+                Some(figure),
+                Some(format!("{figure:.1e} is above {:e}", case.bound)),
+            ),
+            Err(failure) => (None, Some(failure.to_string())),
+        };
+        let verdict = match (failure.is_some(), case.known_failure.is_some()) {
+            (false, false) => Verdict::Holds,
+            (true, false) => Verdict::Fails,
+            (true, true) => Verdict::FailsAsKnown,
+            (false, true) => Verdict::HoldsAfterAll,
+        };
+        Outcome {
+            case,
+            verdict,
+            figure,
+            failure,
+            closure: self.closure,
+            warnings: self.warnings.into_iter().collect(),
+            picture: self.picture,
+        }
+    }
+}
+
+fn nothing_renders() -> Failure {
+    Failure::Check("there is no renderer".to_owned())
+}
+
+/// Flux of the first channel that the warnings of this kind tell of, W.
+pub(super) fn told_w(frame: &Frame, code: &str) -> f64 {
+    let warnings = frame.stats.warnings.iter().filter(|w| w.code == code);
+    warnings.filter_map(|w| Some(w.flux_w?[0])).sum()
+}
+
+/// What the accounts list as lost or only roughly placed, and no warning tells; or a warning about flux that does not say how much.
+fn unsaid(stats: &Stats) -> Option<String> {
+    let told = |code: &str| {
+        let mut found = stats.warnings.iter().filter(|w| w.code == code);
+        found.find_map(|w| w.flux_w)
+    };
+    for warning in &stats.warnings {
+        let tells = warning
+            .flux_w
+            .is_some_and(|w| w.iter().all(|v| v.is_finite()));
+        if !tells && !Warning::WITHOUT_FLUX.contains(&warning.code.as_str()) {
+            return Some(format!("`{}` does not say how much flux", warning.code));
+        }
+    }
+    let scattered: [f64; 3] =
+        std::array::from_fn(|c| stats.energy.iter().map(|a| a.scattered_w[c]).sum());
+    if scattered != [0.0; 3] && told("scattering_not_followed") != Some(scattered) {
+        return Some(format!("{scattered:?} W are scattered and not warned of"));
+    }
+    let open = stats.energy.iter().find(|a| a.closure > MOST_CLOSURE);
+    match open {
+        Some(account) if !stats.planes.is_empty() && told("planes_do_not_conserve").is_none() => {
+            Some(format!(
+                "planes place {:e} of the flux of light {} too much or too little and do not say so",
+                account.closure, account.light
+            ))
+        }
+        _ => None,
+    }
+}
+
+/// The pixels of a layer of three or four channels (the fourth is left out).
+pub(super) fn texels(frame: &Frame, name: LayerName) -> Vec<[f64; 3]> {
+    let Some(layer) = frame.layers.get(&name) else {
+        return Vec::new();
+    };
+    layer
+        .data
+        .chunks_exact(layer.channels)
+        .map(|p| std::array::from_fn(|c| f64::from(p[c.min(layer.channels - 1)])))
+        .collect()
+}

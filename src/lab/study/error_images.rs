@@ -1,0 +1,363 @@
+//! Contact sheet of a sweep: what each setting renders, where it is wrong, and what of that people see.
+//!
+//! One column per setting: the render, the signed error (blue: too dark, red: too bright), the ꟻLIP map. The first column has
+//! the truth and the colour bars. All colours mean the same in all columns.
+
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::colour_map::{diverging, magma};
+use super::plot::PlotError;
+use super::plot::canvas::TextLook;
+use super::plot::palette::{INK, SOFT_INK};
+use super::resize::Fit;
+use super::sheet::{Caption, Sheet, Tile};
+use super::study::{Study, StudyImages};
+use super::words;
+use crate::accuracy::LinearImage;
+use crate::accuracy::display::{display_linear, display_rgb};
+use crate::accuracy::flip::flip;
+use crate::accuracy::metrics::MetricError;
+use crate::image::tone::{code, srgb_from_linear};
+
+/// Settings that one sheet has room for.
+pub const MOST_COLUMNS: usize = 8;
+/// Longest side of a tile, pixels.
+pub const TILE: usize = 256;
+
+/// Narrowest column, pixels: its captions need room.
+const LEAST_COLUMN: usize = 176;
+const GAP: usize = 14;
+const MARGIN: usize = 20;
+/// Height of the title, of the captions above the tiles, and of the remarks below.
+const TITLE: usize = 58;
+const CAPTIONS: usize = 44;
+const REMARKS: usize = 66;
+const ROW_GAP: usize = 14;
+
+/// Draws the sheet of one sweep as a PNG file. Of more than [`MOST_COLUMNS`] settings some are shown, evenly from the first to
+/// the last, and the rest is named in a remark.
+///
+/// # Errors
+///
+/// [`PlotError::NoSweep`], [`PlotError::Empty`], [`PlotError::Images`] when there is not one image of the truth's size for each
+/// setting, and [`PlotError::Metric`] for values that are not finite or a truth without light.
+pub fn error_images(
+    study: &Study,
+    images: &StudyImages,
+    sweep_index: usize,
+) -> Result<Vec<u8>, PlotError> {
+    let shown = shown_images(study, images, sweep_index)?;
+    let (width, height) = (images.truth.width as usize, images.truth.height as usize);
+    let fit = Fit::new(width, height, TILE);
+    let layout = Layout {
+        tile: (fit.size(width), fit.size(height)),
+        columns: shown.len() + 1,
+    };
+    let mean_w_m2 = mean(&images.truth)?;
+    let columns = shown
+        .iter()
+        .map(|image| Column::new(image, images, mean_w_m2))
+        .collect::<Result<Vec<_>, _>>()?;
+    let scale = scale(&columns);
+
+    let mut sheet = Sheet::new(layout.width(), layout.height());
+    let view = |image: &LinearImage| picture(image, images.white_w_m2, fit);
+    let (x, y) = layout.spot(0, 0);
+    sheet.lay(&view(&images.truth)?, x, y);
+    for (index, column) in columns.iter().enumerate() {
+        let tiles = [
+            view(column.image)?,
+            column.signed_tile(fit, scale),
+            column.flip_tile(fit),
+        ];
+        for (row, tile) in tiles.iter().enumerate() {
+            let (x, y) = layout.spot(index + 1, row);
+            sheet.lay(tile, x, y);
+        }
+    }
+    lay_bars(&mut sheet, layout, scale);
+    write_captions(&mut sheet, layout, study, sweep_index);
+    sheet.finish()
+}
+
+/// The images of the settings that are shown, once all fit the study.
+fn shown_images<'a>(
+    study: &Study,
+    images: &'a StudyImages,
+    sweep_index: usize,
+) -> Result<Vec<&'a LinearImage>, PlotError> {
+    let Some(sweep) = study.sweeps.get(sweep_index) else {
+        return Err(PlotError::NoSweep {
+            index: sweep_index,
+            sweeps: study.sweeps.len(),
+        });
+    };
+    if sweep.points.is_empty() {
+        return Err(PlotError::Empty(format!("the sweep of {}", sweep.dial)));
+    }
+    let found = images
+        .points
+        .get(sweep_index)
+        .map_or(&[][..], Vec::as_slice);
+    if found.len() != sweep.points.len() {
+        return Err(PlotError::Images(format!(
+            "the sweep of {} has {} settings and {} images; one image each is needed",
+            sweep.dial,
+            sweep.points.len(),
+            found.len()
+        )));
+    }
+    let size = (images.truth.width, images.truth.height);
+    if let Some(other) = found.iter().find(|i| (i.width, i.height) != size) {
+        return Err(PlotError::Images(format!(
+            "an image of the sweep of {} is {} × {}, the truth {} × {}; all must have the same size",
+            sweep.dial, other.width, other.height, size.0, size.1
+        )));
+    }
+    let shown = shown_indices(found.len()).into_iter();
+    Ok(shown.map(|index| &found[index]).collect())
+}
+
+/// Which of so many settings are shown.
+fn shown_indices(count: usize) -> Vec<usize> {
+    if count <= MOST_COLUMNS {
+        return (0..count).collect();
+    }
+    (0..MOST_COLUMNS)
+        .map(|column| column * (count - 1) / (MOST_COLUMNS - 1))
+        .collect()
+}
+
+/// Errors of one image, value by value.
+struct Column<'a> {
+    image: &'a LinearImage,
+    /// Mean of the channels' E − truth, relative to the mean of the truth.
+    signed: Vec<[f64; 1]>,
+    flip: Vec<[f64; 1]>,
+}
+
+impl<'a> Column<'a> {
+    fn new(
+        image: &'a LinearImage,
+        images: &StudyImages,
+        mean_w_m2: f64,
+    ) -> Result<Self, PlotError> {
+        let (truth, white) = (&images.truth, images.white_w_m2);
+        let shown = (display_rgb(image, white)?, display_rgb(truth, white)?);
+        let map = flip(&shown.0, &shown.1, truth.width, truth.height)?.map;
+        let pairs = image.rgb.iter().zip(&truth.rgb);
+        let signed = pairs.map(|(a, b)| {
+            let sum: f64 = a.iter().zip(b).map(|(a, b)| a - b).sum();
+            [sum / 3.0 / mean_w_m2]
+        });
+        Ok(Self {
+            image,
+            signed: signed.collect(),
+            flip: map.iter().map(|v| [f64::from(*v)]).collect(),
+        })
+    }
+
+    fn size(&self) -> (usize, usize) {
+        (self.image.width as usize, self.image.height as usize)
+    }
+
+    fn signed_tile(&self, fit: Fit, scale: f64) -> Tile {
+        tile(&self.signed, self.size(), fit, |[v]| diverging(v / scale))
+    }
+
+    fn flip_tile(&self, fit: Fit) -> Tile {
+        tile(&self.flip, self.size(), fit, |[v]| magma(v))
+    }
+
+    /// 99th percentile of the absolute signed error.
+    fn extent(&self) -> f64 {
+        let mut errors: Vec<f64> = self.signed.iter().map(|[v]| v.abs()).collect();
+        let index = (errors.len() * 99 / 100).min(errors.len() - 1);
+        *errors.select_nth_unstable_by(index, f64::total_cmp).1
+    }
+}
+
+/// End of the signed scale, as a share of the truth's mean: the middle one of the settings' 99th percentiles, rounded up to 1,
+/// 2 or 5. So coarse settings are cut and fine ones still show something.
+fn scale(columns: &[Column]) -> f64 {
+    let mut extents: Vec<f64> = columns.iter().map(Column::extent).collect();
+    extents.sort_by(f64::total_cmp);
+    let middle = extents[(extents.len() - 1) / 2].max(1e-6);
+    let power = 10f64.powi(middle.log10().floor() as i32);
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * power);
+    let above = steps.into_iter().find(|step| *step >= middle);
+    above.unwrap_or(10.0 * power)
+}
+
+/// Mean over all values, W/m².
+fn mean(truth: &LinearImage) -> Result<f64, PlotError> {
+    let sum: f64 = truth.rgb.as_flattened().iter().sum();
+    if sum > 0.0 && sum.is_finite() {
+        Ok(sum / truth.rgb.as_flattened().len() as f64)
+    } else if sum.is_finite() {
+        Err(MetricError::BlackTruth.into())
+    } else {
+        // Says which value.
+        let all = display_linear(truth, 1.0);
+        Err(all.err().unwrap_or(MetricError::BlackTruth).into())
+    }
+}
+
+/// The map as a picture. Light is averaged before the curve, not after.
+fn picture(image: &LinearImage, white_w_m2: f64, fit: Fit) -> Result<Tile, PlotError> {
+    let light = display_linear(image, white_w_m2)?;
+    let size = (image.width as usize, image.height as usize);
+    Ok(tile(&light, size, fit, |pixel| {
+        pixel.map(|v| code(srgb_from_linear(v), 255) as u8)
+    }))
+}
+
+fn tile<const N: usize>(
+    values: &[[f64; N]],
+    (width, height): (usize, usize),
+    fit: Fit,
+    colour: impl Fn([f64; N]) -> [u8; 3],
+) -> Tile {
+    let fitted = fit.apply(values, width, height);
+    Tile {
+        width: fit.size(width),
+        height: fit.size(height),
+        pixels: fitted.into_iter().map(colour).collect(),
+    }
+}
+
+/// Where things lie.
+#[derive(Clone, Copy)]
+struct Layout {
+    tile: (usize, usize),
+    /// With the truth's.
+    columns: usize,
+}
+
+impl Layout {
+    fn column_width(self) -> usize {
+        self.tile.0.max(LEAST_COLUMN)
+    }
+
+    fn width(self) -> usize {
+        2 * MARGIN + self.columns * (self.column_width() + GAP) - GAP
+    }
+
+    fn height(self) -> usize {
+        TITLE + CAPTIONS + 3 * (self.tile.1 + ROW_GAP) + REMARKS
+    }
+
+    /// Top left corner of a tile.
+    fn spot(self, column: usize, row: usize) -> (usize, usize) {
+        (
+            MARGIN + column * (self.column_width() + GAP),
+            TITLE + CAPTIONS + row * (self.tile.1 + ROW_GAP),
+        )
+    }
+}
+
+/// Colour bars of the lower two rows, in the first column.
+fn lay_bars(sheet: &mut Sheet, layout: Layout, scale: f64) {
+    let width = layout.column_width() - 8;
+    let bar = |colour: &dyn Fn(f64) -> [u8; 3]| Tile {
+        width,
+        height: 14,
+        pixels: (0..14 * width)
+            .map(|i| colour((i % width) as f64 / (width - 1) as f64))
+            .collect(),
+    };
+    let end = words::percent(scale);
+    let rows = [
+        (
+            1,
+            bar(&|t| diverging(2.0 * t - 1.0)),
+            ["E − truth,", "in % of the truth's mean"],
+            [format!("−{end}"), "0".to_owned(), format!("+{end}")],
+        ),
+        (
+            2,
+            bar(&magma),
+            ["FLIP: difference that", "people see"],
+            ["0".to_owned(), "0.5".to_owned(), "1".to_owned()],
+        ),
+    ];
+    for (row, bar, title, ends) in rows {
+        let (x, y) = layout.spot(0, row);
+        let (left, top) = (x as f64, y as f64);
+        for (line, text) in title.into_iter().enumerate() {
+            sheet.write(Caption {
+                text: text.to_owned(),
+                spot: (left, top + 8.0 + 17.0 * line as f64),
+                look: TextLook::new(13.0, INK),
+                width: width as f64,
+            });
+        }
+        sheet.lay(&bar, x, y + 40);
+        let anchors = [HPos::Left, HPos::Center, HPos::Right];
+        for ((text, h), place) in ends.into_iter().zip(anchors).zip([0.0, 0.5, 1.0]) {
+            sheet.write(Caption {
+                text,
+                spot: (left + place * width as f64, top + 68.0),
+                look: TextLook::new(12.0, SOFT_INK).at(h, VPos::Center),
+                width: width as f64,
+            });
+        }
+    }
+}
+
+fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index: usize) {
+    let sweep = &study.sweeps[sweep_index];
+    let wide = (layout.width() - 2 * MARGIN) as f64;
+    let mut write = |text: String, (x, y): (f64, f64), look: TextLook, width: f64| {
+        sheet.write(Caption {
+            text,
+            spot: (x, y),
+            look,
+            width,
+        });
+    };
+    let left = MARGIN as f64;
+    let mut title = format!("Errors by setting of {}", sweep.dial);
+    if !study.scene.is_empty() {
+        title += &format!(": {}", study.scene);
+    }
+    write(title, (left, 28.0), TextLook::new(19.0, INK), wide);
+
+    let narrow = layout.column_width() as f64;
+    let (strong, soft) = (TextLook::new(14.0, INK), TextLook::new(12.0, SOFT_INK));
+    let y = TITLE as f64;
+    let truth = format!("own error {}", words::percent(study.truth.relative_error));
+    write("truth".to_owned(), (left, y + 8.0), strong, narrow);
+    write(truth, (left, y + 28.0), soft, narrow);
+    let indices = shown_indices(sweep.points.len());
+    for (column, index) in indices.iter().enumerate() {
+        let point = &sweep.points[*index];
+        let x = layout.spot(column + 1, 0).0 as f64;
+        let name = words::named_setting(sweep, point);
+        let figures = format!(
+            "L1 {} · {} ms",
+            words::percent(point.error.relative_l1),
+            words::ms(point.cost.wall_ms.median)
+        );
+        write(name, (x, y + 8.0), strong, narrow);
+        write(figures, (x, y + 28.0), soft, narrow);
+    }
+
+    let y = (layout.height() - REMARKS) as f64;
+    let mut remarks = vec![
+        "Blue: too dark, red: too bright.".to_owned(),
+        "Stronger errors have the colour of the scale's end.".to_owned(),
+    ];
+    if sweep.points.len() > MOST_COLUMNS {
+        let hidden = (0..sweep.points.len()).filter(|index| !indices.contains(index));
+        let rest: Vec<String> = hidden
+            .map(|index| words::setting(sweep, &sweep.points[index]))
+            .collect();
+        let rest = rest.join("; ");
+        remarks.push(format!("Not shown, for lack of room: {rest}."));
+    }
+    for (line, remark) in remarks.into_iter().enumerate() {
+        let spot = (left, y + 8.0 + 17.0 * line as f64);
+        write(remark, spot, soft, wide);
+    }
+}

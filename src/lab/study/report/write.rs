@@ -1,0 +1,147 @@
+//! A folder with everything of a study.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::csv::to_csv;
+use super::error::ReportError;
+use super::json::to_json;
+use super::markdown::{ReportLinks, SweepLinks, to_markdown};
+use crate::lab::study::error_images::error_images;
+use crate::lab::study::plot::{convergence, error_against_time};
+use crate::lab::study::study::{Study, StudyImages};
+
+/// Writes `study.json`, `study.csv`, `study.md`, `error_time.svg` and `.png`, and for each sweep `convergence_<dial>.svg` and
+/// `.png` and `errors_<dial>.png` into `folder`, which is made if need be. Returns their paths, the report first.
+///
+/// Everything is drawn before anything is written, and written aside before anything is moved to its place: a failure leaves
+/// the files of an earlier study as they were. Pictures of nothing (a sweep without settings) are left out.
+///
+/// # Errors
+///
+/// See [`ReportError`].
+pub fn write_study(
+    folder: &Path,
+    study: &Study,
+    images: &StudyImages,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let mut files = vec![
+        ("study.json".to_owned(), to_json(study)?.into_bytes()),
+        ("study.csv".to_owned(), to_csv(study).into_bytes()),
+    ];
+    let mut links = ReportLinks {
+        json: Some("study.json".to_owned()),
+        csv: Some("study.csv".to_owned()),
+        ..ReportLinks::default()
+    };
+    if study.sweeps.iter().any(|sweep| !sweep.points.is_empty()) {
+        let plot = error_against_time(study)?;
+        links.error_time = Some("error_time.svg".to_owned());
+        files.push(("error_time.svg".to_owned(), plot.svg.into_bytes()));
+        files.push(("error_time.png".to_owned(), plot.png));
+    }
+    for (index, name) in file_names(study).into_iter().enumerate() {
+        let mut sweep = SweepLinks::default();
+        if !study.sweeps[index].points.is_empty() {
+            let plot = convergence(study, index)?;
+            let (svg, errors) = (
+                format!("convergence_{name}.svg"),
+                format!("errors_{name}.png"),
+            );
+            files.push((svg.clone(), plot.svg.into_bytes()));
+            files.push((format!("convergence_{name}.png"), plot.png));
+            files.push((errors.clone(), error_images(study, images, index)?));
+            sweep = SweepLinks {
+                convergence: Some(svg),
+                errors: Some(errors),
+            };
+        }
+        links.sweeps.push(sweep);
+    }
+    let report = to_markdown(study, &links).into_bytes();
+    files.insert(0, ("study.md".to_owned(), report));
+    write_all(folder, &files)
+}
+
+/// A name for each sweep that any file system takes, all different: `beams`, `beams_x_steps`, `beams_2`.
+fn file_names(study: &Study) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for sweep in &study.sweeps {
+        let plain: String = sweep
+            .dial
+            .replace('×', "x")
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() { c } else { ' ' })
+            .collect();
+        let words: Vec<&str> = plain.split_whitespace().collect();
+        let stem = match words.join("_").to_ascii_lowercase() {
+            empty if empty.is_empty() => "sweep".to_owned(),
+            stem => stem,
+        };
+        let mut name = stem.clone();
+        let mut number = 2;
+        while names.contains(&name) {
+            name = format!("{stem}_{number}");
+            number += 1;
+        }
+        names.push(name);
+    }
+    names
+}
+
+/// Writes all files aside, then moves them to their places.
+fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>, ReportError> {
+    let failed = |path: &Path, reason: io::Error| ReportError::Write {
+        path: path.to_owned(),
+        reason,
+    };
+    fs::create_dir_all(folder).map_err(|reason| failed(folder, reason))?;
+    let mut moves: Vec<(PathBuf, PathBuf)> = Vec::new();
+    let mut result = Ok(());
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        let aside = aside(folder, name);
+        moves.push((aside.clone(), path.clone()));
+        result = write_file(&aside, bytes).map_err(|reason| failed(&path, reason));
+        // A folder in a file's place would be found only after some files had moved.
+        if result.is_ok() && path.is_dir() {
+            let reason = io::Error::from(io::ErrorKind::IsADirectory);
+            result = Err(failed(&path, reason));
+        }
+        if result.is_err() {
+            break;
+        }
+    }
+    if result.is_ok() {
+        for (aside, path) in &moves {
+            result = fs::rename(aside, path).map_err(|reason| failed(path, reason));
+            if result.is_err() {
+                break;
+            }
+        }
+    }
+    if let Err(error) = result {
+        for (aside, _) in &moves {
+            // Moved already, or never made.
+            let _ = fs::remove_file(aside);
+        }
+        return Err(error);
+    }
+    Ok(moves.into_iter().map(|(_, path)| path).collect())
+}
+
+fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+/// A name in the folder that no other process uses.
+fn aside(folder: &Path, name: &str) -> PathBuf {
+    let mut aside = OsString::from(".");
+    aside.push(name);
+    aside.push(format!(".{}.tmp", std::process::id()));
+    folder.join(aside)
+}
