@@ -227,7 +227,7 @@ fn sheet(
             height: truth.height,
             rgb: truth.irradiance.clone(),
         },
-        white_w_m2: std::f64::consts::PI * SceneFacts::of(base)?.white_radiance,
+        white_w_m2: std::f64::consts::PI * SceneFacts::of(base)?.lights.white_radiance,
         points: vec![images],
     };
     Ok(error_images(&study, &images, 0)?)

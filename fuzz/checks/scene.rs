@@ -32,8 +32,8 @@ pub(crate) fn check(bytes: &[u8]) {
         arena_bytes: 64 << 20,
     };
     let planned = [
-        plan::plan_scene(&facts, &cold),
-        plan::plan_scene(&facts, &WarmCache),
+        plan::plan_scene(&facts, plan::Wanted::Frame, &cold),
+        plan::plan_scene(&facts, plan::Wanted::Frame, &WarmCache),
     ];
     for plan in planned {
         let plan = plan.unwrap_or_else(|error| panic!("{error}"));

@@ -13,7 +13,7 @@ use super::{files, scene_file};
 use crate::config::{Limits, RenderConfig};
 use crate::facts::SceneFacts;
 use crate::plan::Plan;
-use crate::plan::{NothingCached, plan_scene};
+use crate::plan::{NothingCached, Wanted, plan_scene};
 use crate::render::{RenderError, Renderer};
 use crate::stats::ChosenDials;
 
@@ -45,7 +45,7 @@ pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<()
         let empty = NothingCached {
             arena_bytes: config.level_map_budget_bytes(),
         };
-        plan_scene(&facts, &empty).map_err(RenderError::from)?
+        plan_scene(&facts, Wanted::Frame, &empty).map_err(RenderError::from)?
     };
     let budget_bytes = config.memory_budget_bytes();
     if plan.peak_bytes > budget_bytes {

@@ -12,7 +12,8 @@ const SWAY: f64 = 2.0;
 impl SceneFacts {
     /// Texels along a side of an object's maps as a share of `quality.level_map_texels`, above 0 … 1; 1 without level of detail.
     pub fn detail_of(&self, object: usize) -> f64 {
-        f64::from(self.objects[object].map_texels) / f64::from(self.quality.level_map_texels)
+        f64::from(self.receivers.objects[object].map_texels)
+            / f64::from(self.quality.level_map_texels)
     }
 
     /// Reference planes of an object, 2 … `quality.planes`: as many fewer as its maps are smaller, so that a plane stays as far from
@@ -34,14 +35,14 @@ impl SceneFacts {
     /// Gives each object maps for its size on the picture, where the scene asks for that.
     pub(super) fn size_maps(&mut self) {
         let per_pixel = self.quality.level_of_detail;
-        let Some(camera) = self.camera.filter(|_| per_pixel > 0.0) else {
+        let Some(camera) = self.output.camera.filter(|_| per_pixel > 0.0) else {
             return;
         };
         let most = self.quality.level_map_texels;
-        for object in 0..self.objects.len() {
+        for object in 0..self.receivers.objects.len() {
             let texels = (self.size_in_pixels(object, &camera) * per_pixel).ceil();
             let texels = texels.min(f64::from(most)) as u32;
-            self.objects[object].map_texels =
+            self.receivers.objects[object].map_texels =
                 texels.next_power_of_two().clamp(LevelMapTexels::MIN, most);
         }
     }
@@ -50,8 +51,8 @@ impl SceneFacts {
     ///
     /// Flat water in between brings an object nearer, by what it takes from the way below (d / n).
     fn size_in_pixels(&self, object: usize, camera: &CameraFacts) -> f64 {
-        let object = &self.objects[object];
-        let highest_m = self.surface.max_height_m();
+        let object = &self.receivers.objects[object];
+        let highest_m = self.water.surface.max_height_m();
         // From below, total reflection may show anything.
         let in_air = camera.eye.y > highest_m;
         if in_air && self.is_outside(object.min, object.max, camera) {
@@ -69,7 +70,7 @@ impl SceneFacts {
         } else {
             0.0
         };
-        let looks_m = way.length() * (1.0 - below + below / self.ior);
+        let looks_m = way.length() * (1.0 - below + below / self.water.ior);
         // Away from the picture's middle a plane image is stretched, at most by what it is in the corner.
         let corner = (1.0 + camera.right.length_squared() + camera.up.length_squared()).sqrt();
         let cosine = way
@@ -83,8 +84,8 @@ impl SceneFacts {
     /// outer side of one of the picture's edges.
     fn is_outside(&self, min: DVec3, max: DVec3, camera: &CameraFacts) -> bool {
         // Flat water shows a point between where it is and the water above it; waves move that to and fro.
-        let sway_m = SWAY * self.surface.max_slope() * (-min.y).max(0.0);
-        let top_m = max.y.max(self.surface.max_height_m());
+        let sway_m = SWAY * self.water.surface.max_slope() * (-min.y).max(0.0);
+        let top_m = max.y.max(self.water.surface.max_height_m());
         let low = DVec3::new(min.x - sway_m, min.y, min.z - sway_m);
         let high = DVec3::new(max.x + sway_m, top_m, max.z + sway_m);
         let corners: [DVec3; 8] = std::array::from_fn(|i| {

@@ -55,7 +55,8 @@ impl Refractor<'_> {
                 if direction.dot(normal) >= 0.0 {
                     continue; // looks away from the light: nothing comes through
                 }
-                let Some(ray) = refraction::refract_direction(direction, normal, self.facts.ior)
+                let Some(ray) =
+                    refraction::refract_direction(direction, normal, self.facts.water.ior)
                 else {
                     continue;
                 };
@@ -80,8 +81,8 @@ pub(super) fn water_window(
     position_m: DVec3,
     receivers: &[Lit],
 ) -> Option<Rect> {
-    let height_m = facts.surface.max_height_m();
-    let rim = facts.surface.rim_slopes(RIM_DIRECTIONS);
+    let height_m = facts.water.surface.max_height_m();
+    let rim = facts.water.surface.rim_slopes(RIM_DIRECTIONS);
     let refractor = Refractor {
         facts,
         position_m,
@@ -94,7 +95,7 @@ pub(super) fn water_window(
             vec![0.0]
         },
     };
-    let lean = (1.0 / facts.ior).asin() + facts.surface.max_slope().atan();
+    let lean = (1.0 / facts.water.ior).asin() + facts.water.surface.max_slope().atan();
     let flattest = if lean < FLATTEST.atan() {
         lean.tan()
     } else {

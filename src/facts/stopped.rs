@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec2, DVec3};
 use super::placement::{ObjectFacts, corners};
 use super::source::Source;
 use super::window::{EVERYWHERE_M, Rect};
-use super::{LightFacts, SceneFacts};
+use super::{BeamSet, SceneFacts};
 use crate::mesh::{Mesh, hierarchy};
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::octahedral::octahedral_place;
@@ -40,12 +40,20 @@ pub(super) struct Stopped<'a> {
 impl<'a> Stopped<'a> {
     /// `meshes` are those of the scene's objects, one each.
     pub(super) fn new(facts: &'a SceneFacts, meshes: &'a [Arc<Mesh>]) -> Self {
-        let pairs = facts.objects.len() * facts.lights.len();
+        let pairs = facts.receivers.objects.len() * facts.lights.beam_sets.len();
         let side = (RAYS / pairs.max(1) as f64).sqrt() as u32;
-        let positions = facts.lights.iter().filter_map(|l| l.source.position_m());
+        let positions = facts
+            .lights
+            .beam_sets
+            .iter()
+            .filter_map(|l| l.source.position_m());
         let within: usize = positions
             .map(|position_m| {
-                let around = facts.objects.iter().filter(|o| is_around(o, position_m));
+                let around = facts
+                    .receivers
+                    .objects
+                    .iter()
+                    .filter(|o| is_around(o, position_m));
                 around.count()
             })
             .sum();
@@ -54,6 +62,7 @@ impl<'a> Stopped<'a> {
             facts,
             meshes,
             mesh_from_local: facts
+                .receivers
                 .objects
                 .iter()
                 .map(|object| object.local_from_mesh.inverse())
@@ -84,9 +93,9 @@ impl<'a> Stopped<'a> {
         power.map(|i| 2.0 * TAU * i * share)
     }
 
-    fn of_all_lights(&self, unit_flux: impl Fn(&LightFacts) -> f64) -> [f64; 3] {
+    fn of_all_lights(&self, unit_flux: impl Fn(&BeamSet) -> f64) -> [f64; 3] {
         let mut sum_w = [0.0; 3];
-        for light in &self.facts.lights {
+        for light in &self.facts.lights.beam_sets {
             let unit = unit_flux(light);
             for (sum, power) in sum_w.iter_mut().zip(light.power) {
                 *sum += power * unit;
@@ -96,8 +105,8 @@ impl<'a> Stopped<'a> {
     }
 
     /// Flux of a light of unit power that the dry part of an object keeps from the water, m² or sr.
-    fn unit_flux_above(&self, object: usize, light: &LightFacts) -> f64 {
-        let bounds = &self.facts.objects[object];
+    fn unit_flux_above(&self, object: usize, light: &BeamSet) -> f64 {
+        let bounds = &self.facts.receivers.objects[object];
         if let Source::Sun { to_light } = light.source {
             return self.silhouette_m2(object, to_light, light.window);
         }
@@ -114,7 +123,7 @@ impl<'a> Stopped<'a> {
 
     /// Area that the dry part of an object shows a sun, as far as its shadow falls on a piece of the water at rest, m².
     fn silhouette_m2(&self, object: usize, to_light: DVec3, window: Rect) -> f64 {
-        let bounds = &self.facts.objects[object];
+        let bounds = &self.facts.receivers.objects[object];
         if bounds.max.y < 0.0 {
             return 0.0;
         }
@@ -143,7 +152,7 @@ impl<'a> Stopped<'a> {
     }
 
     /// Flux of a light of unit power that is stopped a second and further times, m² or sr.
-    fn unit_flux_again(&self, light: &LightFacts) -> f64 {
+    fn unit_flux_again(&self, light: &BeamSet) -> f64 {
         let again = |from_m: DVec3, direction: DVec3| {
             // What goes up ends at the water.
             let reach_m = if direction.y > 0.0 {
@@ -158,7 +167,7 @@ impl<'a> Stopped<'a> {
             met.count().saturating_sub(1) as f64
         };
         let wet = self.facts.wet_objects().count().max(1) as f64;
-        let rays = (RAYS / (wet * self.facts.lights.len() as f64)).clamp(64.0, 4096.0);
+        let rays = (RAYS / (wet * self.facts.lights.beam_sets.len() as f64)).clamp(64.0, 4096.0);
         let window = match (light.source, light.objects_window) {
             (Source::Submerged { position_m }, _) => {
                 let directions = rays as u32;
@@ -176,8 +185,8 @@ impl<'a> Stopped<'a> {
         let side = (rays.sqrt() as u32).clamp(8, 2 * MOST_SIDE);
         let falls = |place: Place| {
             let (to_light, _) = place.to(&light.source)?;
-            let direction = refract_direction(-to_light, DVec3::Y, self.facts.ior)?;
-            let enters = fresnel_transmittance(to_light.y, self.facts.ior);
+            let direction = refract_direction(-to_light, DVec3::Y, self.facts.water.ior)?;
+            let enters = fresnel_transmittance(to_light.y, self.facts.water.ior);
             Some(again(place.at_m, direction) * enters * place.unit_flux(&light.source))
         };
         places(window, side).filter_map(falls).sum()
@@ -275,7 +284,7 @@ fn sphere(count: u32) -> impl Iterator<Item = DVec3> {
 }
 
 /// The piece of a point light's window in which the shadow of an object's dry part lies; `None` where there is none.
-fn shadow_on_water(object: &ObjectFacts, light: &LightFacts) -> Option<Rect> {
+fn shadow_on_water(object: &ObjectFacts, light: &BeamSet) -> Option<Rect> {
     let Source::Point { position_m } = light.source else {
         return None;
     };

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::source::Source;
-use super::{LightFacts, SceneFacts};
+use super::{BeamSet, SceneFacts};
 use crate::physics::refraction::{normal_from_slope, refract_direction};
 use crate::stats::Warning;
 use crate::waves::WaterSurface;
@@ -30,7 +30,7 @@ pub fn waves_shade_waves(light: u32) -> Warning {
 }
 
 /// Whether slopes of these waves can look away from a light.
-pub(super) fn looks_away(surface: &WaterSurface, light: &LightFacts) -> bool {
+pub(super) fn looks_away(surface: &WaterSurface, light: &BeamSet) -> bool {
     if surface.max_slope() == 0.0 {
         return false;
     }
@@ -53,7 +53,7 @@ pub(super) fn looks_away(surface: &WaterSurface, light: &LightFacts) -> bool {
 
 /// Whether a ray that these waves refract can come out of the water again: it has to be flatter than the steepest slope that could
 /// fall away under it.
-fn may_leave_again(surface: &WaterSurface, light: &LightFacts, ior: f64) -> bool {
+fn may_leave_again(surface: &WaterSurface, light: &BeamSet, ior: f64) -> bool {
     let rim = surface.rim_slopes(SLOPES);
     let to_lights = match light.source {
         Source::Sun { to_light } => vec![to_light],
@@ -121,12 +121,12 @@ impl UnfollowedWays {
 impl SceneFacts {
     /// Which ways of light the waves of this scene make possible that are not followed.
     pub fn unfollowed_ways(&self) -> UnfollowedWays {
-        let any = |may: &dyn Fn(&LightFacts) -> bool| self.lights.iter().any(may);
-        let floor = self.floor.as_ref();
+        let any = |may: &dyn Fn(&BeamSet) -> bool| self.lights.beam_sets.iter().any(may);
+        let floor = self.receivers.floor.as_ref();
         UnfollowedWays {
-            turned: any(&|light| looks_away(&self.surface, light)),
-            again: any(&|light| may_leave_again(&self.surface, light, self.ior)),
-            bared: floor.is_some_and(|floor| self.surface.max_height_m() > -floor.y_m)
+            turned: any(&|light| looks_away(&self.water.surface, light)),
+            again: any(&|light| may_leave_again(&self.water.surface, light, self.water.ior)),
+            bared: floor.is_some_and(|floor| self.water.surface.max_height_m() > -floor.y_m)
                 && any(&|light| !matches!(light.source, Source::Submerged { .. })),
         }
     }

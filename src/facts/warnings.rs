@@ -9,7 +9,7 @@ use super::source::Source;
 use super::stopped::{self, Stopped};
 use super::unfollowed;
 use super::window::Rect;
-use super::{LightFacts, SceneFacts};
+use super::{BeamSet, SceneFacts};
 use crate::mesh::{Mesh, mtl, repair};
 use crate::scene::ResolvedScene;
 use crate::stats::Warning;
@@ -54,12 +54,12 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     all.extend(thin_objects(facts, meshes));
     all.extend(planes(facts, &stopped));
     all.extend(coarse_cells(facts));
-    for light in &facts.lights {
+    for light in &facts.lights.beam_sets {
         all.extend(from_below(light));
         all.extend(within_objects(facts, light, &stopped));
         all.extend(close_to_water(facts, light));
-        if unfollowed::looks_away(&facts.surface, light) {
-            all.push(unfollowed::waves_shade_waves(light.index));
+        if unfollowed::looks_away(&facts.water.surface, light) {
+            all.push(unfollowed::waves_shade_waves(light.light_index));
         }
     }
     all
@@ -82,8 +82,12 @@ fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
         meshes[..index].iter().all(|mesh| mesh.id != *id)
     };
     let shows_material = |id: &str| {
-        let mut same = facts.objects.iter().filter(|object| object.mesh == id);
-        facts.camera.is_some() && same.any(|object| object.albedo.is_none())
+        let mut same = facts
+            .receivers
+            .objects
+            .iter()
+            .filter(|object| object.mesh == id);
+        facts.output.camera.is_some() && same.any(|object| object.albedo.is_none())
     };
     let shows_material = &shows_material;
     let of_object = |index: usize| {
@@ -107,7 +111,11 @@ fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
 
 /// Objects above the water, or reaching out of it: their shadows on the water.
 fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
-    let mut through_water = facts.lights.iter().filter(|light| !light.is_submerged());
+    let mut through_water = facts
+        .lights
+        .beam_sets
+        .iter()
+        .filter(|light| !light.is_submerged());
     if through_water.next().is_none() {
         return Vec::new();
     }
@@ -131,10 +139,11 @@ fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
         );
         let flux_w = stopped.above_water_w(index);
         // What stays below the highest crests may never be seen out of the water.
-        let is_clear = object.max.y > facts.surface.max_height_m();
+        let is_clear = object.max.y > facts.water.surface.max_height_m();
         (is_clear || flux_w != [0.0; 3]).then(|| with_flux(found, flux_w))
     };
     facts
+        .receivers
         .objects
         .iter()
         .enumerate()
@@ -145,11 +154,11 @@ fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
 /// Objects whose bounds are thinner than a texel of their level map somewhere across the light.
 fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
     let of_object = |index: usize| {
-        let object = &facts.objects[index];
+        let object = &facts.receivers.objects[index];
         let mut flux_w = [0.0; 3];
         let mut thinnest: Option<(f64, f64)> = None;
-        for light in &facts.lights {
-            let Some(level_box) = &light.boxes[index] else {
+        for light in &facts.lights.beam_sets {
+            let Some(level_box) = &facts.lights.boxes_of(light)[index] else {
                 continue;
             };
             let texel_m = level_box.density_per_flux.powf(-0.5);
@@ -159,7 +168,9 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
                 continue;
             }
             let middle_m = object.wet_middle();
-            let unit = light.source.most_onto(middle_m, across.area_m2, facts.ior);
+            let unit = light
+                .source
+                .most_onto(middle_m, across.area_m2, facts.water.ior);
             for (sum, power) in flux_w.iter_mut().zip(light.power) {
                 *sum += power * unit;
             }
@@ -189,7 +200,7 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
 fn planes(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
     let mut all = Vec::new();
     let wet = facts.wet_objects().count();
-    if !facts.quality.has_planes() || facts.lights.is_empty() {
+    if !facts.quality.has_planes() || facts.lights.beam_sets.is_empty() {
         return all;
     }
     if wet > 1 {
@@ -212,21 +223,22 @@ fn planes(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
 
 impl SceneFacts {
     /// Whether the cells of a light's grid are too large for the shortest wave.
-    pub fn is_undersampled(&self, light: &LightFacts) -> bool {
+    pub fn is_undersampled(&self, light: &BeamSet) -> bool {
         cells_needed(self, light) > f64::from(self.quality.water_cells)
     }
 }
 
 /// Cells along a side of a light's grid that the shortest wave wants.
-fn cells_needed(facts: &SceneFacts, light: &LightFacts) -> f64 {
+fn cells_needed(facts: &SceneFacts, light: &BeamSet) -> f64 {
     let widest_m = light.span_m(facts.quality.water_cells);
-    (widest_m * CELLS_PER_WAVE / facts.surface.shortest_wave_m()).ceil()
+    (widest_m * CELLS_PER_WAVE / facts.water.surface.shortest_wave_m()).ceil()
 }
 
 /// Where a cell of the water is too large for the shortest wave.
 fn coarse_cells(facts: &SceneFacts) -> Option<Warning> {
     let light = facts
         .lights
+        .beam_sets
         .iter()
         .filter(|light| facts.is_undersampled(light))
         .max_by(|a, b| cells_needed(facts, a).total_cmp(&cells_needed(facts, b)))?;
@@ -236,25 +248,25 @@ fn coarse_cells(facts: &SceneFacts) -> Option<Warning> {
         format!(
             "a water cell of {:.3} m is coarse for the shortest wave of {:.3} m; {:.0} cells would do",
             light.span_m(cells) / f64::from(cells),
-            facts.surface.shortest_wave_m(),
+            facts.water.surface.shortest_wave_m(),
             cells_needed(facts, light)
         ),
         "/quality/water_cells",
     ))
 }
 
-fn from_below(light: &LightFacts) -> Option<Warning> {
+fn from_below(light: &BeamSet) -> Option<Warning> {
     light.is_submerged().then(|| {
         let found = warning(
             "light_from_below_not_followed",
             "the light is under water; what it sends up to the surface, half of its power at most, is not followed into the air or back down",
-            format!("/lights/{}", light.index),
+            format!("/lights/{}", light.light_index),
         );
         with_flux(found, light.power.map(|i| std::f64::consts::TAU * i))
     })
 }
 
-fn within_objects(facts: &SceneFacts, light: &LightFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
+fn within_objects(facts: &SceneFacts, light: &BeamSet, stopped: &Stopped<'_>) -> Vec<Warning> {
     let Some(position_m) = light.source.position_m() else {
         return Vec::new();
     };
@@ -264,18 +276,18 @@ fn within_objects(facts: &SceneFacts, light: &LightFacts, stopped: &Stopped<'_>)
             format!(
                 "the light is within the bounds of object {index}; of what surrounds it only the side that the object's level map shows is lit, by part of the flux that goes to the object"
             ),
-            format!("/lights/{}", light.index),
+            format!("/lights/{}", light.light_index),
         );
         with_flux(found, stopped.onto_w(index, position_m, light.power))
     };
     facts
         .wet_objects()
-        .filter(|&index| stopped::is_around(&facts.objects[index], position_m))
+        .filter(|&index| stopped::is_around(&facts.receivers.objects[index], position_m))
         .map(of_object)
         .collect()
 }
 
-fn close_to_water(facts: &SceneFacts, light: &LightFacts) -> Option<Warning> {
+fn close_to_water(facts: &SceneFacts, light: &BeamSet) -> Option<Warning> {
     let Source::Point { position_m } = light.source else {
         return None;
     };
@@ -304,7 +316,7 @@ fn close_to_water(facts: &SceneFacts, light: &LightFacts) -> Option<Warning> {
             "the light is {:.1e} m above the water at rest, less than {CLOSE_CELLS} of the smallest water cells of {finest_m:.1e} m: where the light of the cells around its foot goes is coarse",
             position_m.y
         ),
-        format!("/lights/{}", light.index),
+        format!("/lights/{}", light.light_index),
     );
     Some(with_flux(found, light.power.map(|i| i * unit)))
 }

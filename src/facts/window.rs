@@ -95,19 +95,19 @@ impl Lit {
 /// What the output wants lit under water: the floor's map and wet objects.
 pub(super) fn receivers(facts: &SceneFacts) -> Vec<Lit> {
     let mut all = Vec::new();
-    if let (Some(map), Some(floor)) = (&facts.floor_map, &facts.floor) {
+    if let (Some(map), Some(floor)) = (&facts.receivers.floor_map, &facts.receivers.floor) {
         all.push(Lit {
             min: DVec3::new(map.rect.min.x, floor.y_m, map.rect.min.y),
             max: DVec3::new(map.rect.max.x, floor.y_m, map.rect.max.y),
         });
     }
-    let receives = |index: usize| match facts.map_receiver {
+    let receives = |index: usize| match facts.output.receiver {
         None => true,
         Some(crate::scene::Receiver::Object(wanted)) => wanted as usize == index,
         Some(crate::scene::Receiver::Floor(_)) => false,
     };
     for index in facts.wet_objects().filter(|&index| receives(index)) {
-        let object = &facts.objects[index];
+        let object = &facts.receivers.objects[index];
         all.push(Lit {
             min: object.min,
             max: object.max,
@@ -133,7 +133,7 @@ struct Drift {
 
 fn drift(facts: &SceneFacts, direction: DVec3) -> Option<Drift> {
     let mut bounds: Option<(DVec2, DVec2)> = None;
-    let rim = facts.surface.rim_slopes(RIM_DIRECTIONS);
+    let rim = facts.water.surface.rim_slopes(RIM_DIRECTIONS);
     let tilts = std::iter::once(DVec2::ZERO).chain(
         rim.iter()
             .flat_map(|&s| [0.25, 0.5, 0.75, 1.0].map(|share| s * share)),
@@ -143,7 +143,7 @@ fn drift(facts: &SceneFacts, direction: DVec3) -> Option<Drift> {
         if direction.dot(normal) >= 0.0 {
             continue; // looks away from the light: nothing comes through
         }
-        let Some(ray) = refraction::refract_direction(direction, normal, facts.ior) else {
+        let Some(ray) = refraction::refract_direction(direction, normal, facts.water.ior) else {
             continue;
         };
         if ray.y >= -1e-3 {
@@ -172,8 +172,8 @@ fn entry(rect: Rect, drift: &Drift, shallow: f64, deep: f64) -> Rect {
 
 /// Where light must enter to reach an object.
 fn object_entry(facts: &SceneFacts, index: usize, drift: &Drift) -> Rect {
-    let height = facts.surface.max_height_m();
-    let object = &facts.objects[index];
+    let height = facts.water.surface.max_height_m();
+    let object = &facts.receivers.objects[index];
     let lit = Lit {
         min: object.min,
         max: object.max,
@@ -203,7 +203,7 @@ pub(super) fn objects_window(facts: &SceneFacts, source: &Source) -> Option<Rect
 /// The rectangle of water whose light can reach the receivers, or `None` when nothing gets through.
 pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
     let drift = drift(facts, -to_light)?;
-    let height = facts.surface.max_height_m();
+    let height = facts.water.surface.max_height_m();
     let mut window: Option<Rect> = None;
     for lit in receivers(facts) {
         let rect = entry(lit.rect(), &drift, -lit.max.y - height, -lit.min.y + height);
@@ -211,7 +211,11 @@ pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
     }
     // A margin against rounding at the rim, so that no texel at the edge misses a sliver: a share of the window, and of how far from
     // the origin and below the water f32 has to hold the ends of its rays.
-    let deepest_m = facts.floor.as_ref().map_or(0.0, |floor| -floor.y_m);
+    let deepest_m = facts
+        .receivers
+        .floor
+        .as_ref()
+        .map_or(0.0, |floor| -floor.y_m);
     window.map(|w| {
         let reach_m = w.min.abs().max(w.max.abs()).max_element() + deepest_m;
         w.grown((1e-5 * w.size().max_element().max(1e-6)).max(F32_ROUNDINGS * reach_m))
@@ -220,17 +224,17 @@ pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
 
 /// The part of the floor that a camera can see, through waves and all.
 pub fn visible_floor(facts: &SceneFacts, camera: &CameraFacts) -> Region {
-    let Some(floor) = &facts.floor else {
+    let Some(floor) = &facts.receivers.floor else {
         return Region::Nothing;
     };
-    let height = facts.surface.max_height_m();
+    let height = facts.water.surface.max_height_m();
     let whole = Region::Rect(floor.rect);
     if camera.eye.y <= height {
         // Under water (or in the waves) total reflection shows the floor in the surface: anything may be seen.
         return whole;
     }
     let tilts: Vec<DVec2> = std::iter::once(DVec2::ZERO)
-        .chain(facts.surface.rim_slopes(16))
+        .chain(facts.water.surface.rim_slopes(16))
         .collect();
     let mut seen: Option<Rect> = None;
     for j in 0..VIEW_SAMPLES {
@@ -252,7 +256,8 @@ pub fn visible_floor(facts: &SceneFacts, camera: &CameraFacts) -> Region {
                 let water = eye + direction * ((eye.y - level) / -direction.y);
                 for slope in &tilts {
                     let normal = refraction::normal_from_slope(slope.x, slope.y);
-                    let Some(ray) = refraction::refract_direction(direction, normal, facts.ior)
+                    let Some(ray) =
+                        refraction::refract_direction(direction, normal, facts.water.ior)
                     else {
                         continue;
                     };

@@ -27,7 +27,7 @@ pub const PASS: PassDesc = PassDesc {
 
 /// Passes that follow a picture are in when there is one.
 pub(super) fn wanted_for_camera(facts: &SceneFacts) -> Result<String, String> {
-    match &facts.camera {
+    match &facts.output.camera {
         Some(camera) => Ok(format!(
             "a view of {} × {} pixels",
             camera.width, camera.height
@@ -38,7 +38,7 @@ pub(super) fn wanted_for_camera(facts: &SceneFacts) -> Result<String, String> {
 
 /// One invocation per pixel of a band.
 pub(super) fn pixel_step(entry: &'static str, facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
-    let (Run::Band { rows, .. }, Some(camera)) = (run, &facts.camera) else {
+    let (Run::Band { rows, .. }, Some(camera)) = (run, &facts.output.camera) else {
         return Vec::new();
     };
     vec![Step {
@@ -63,17 +63,17 @@ fn view_uniform(facts: &SceneFacts, run: Run<'_>) -> Vec<u8> {
     else {
         return Vec::new();
     };
-    let Some(camera) = &facts.camera else {
+    let Some(camera) = &facts.output.camera else {
         return Vec::new();
     };
-    let floor = facts.floor.as_ref();
+    let floor = facts.receivers.floor.as_ref();
     let view = View {
         eye: vec4(camera.eye, 0.0),
         right: vec4(camera.right, 0.0),
         up: vec4(camera.up, 0.0),
         forward: vec4(camera.forward, 0.0),
-        extinction_per_m: vec4(facts.extinction_per_m, 0.0),
-        sky_radiance: vec4(facts.sky_radiance, 0.0),
+        extinction_per_m: vec4(facts.water.extinction_per_m, 0.0),
+        sky_radiance: vec4(facts.lights.sky.radiance, 0.0),
         floor_albedo: floor.map_or([0.0; 4], |f| vec4(f.albedo, 0.0)),
         floor_min_m: floor.map_or([0.0; 2], |f| vec2(f.rect.min)),
         floor_max_m: floor.map_or([0.0; 2], |f| vec2(f.rect.max)),
@@ -84,15 +84,15 @@ fn view_uniform(facts: &SceneFacts, run: Run<'_>) -> Vec<u8> {
         first_row,
         row_count: rows,
         orthographic: u32::from(camera.orthographic),
-        wave_count: facts.surface.components.len() as u32,
-        instance_count: facts.objects.len() as u32,
-        light_count: facts.lights.len() as u32,
-        air_light_count: facts.air_lights.len() as u32,
-        max_height_m: facts.surface.max_height_m() as f32,
-        max_slope: facts.surface.max_slope() as f32,
-        ior: facts.ior as f32,
-        sky_transmittance: facts.sky_transmittance as f32,
-        sky_path_factor: facts.sky_path_factor as f32,
+        wave_count: facts.water.surface.components.len() as u32,
+        instance_count: facts.receivers.objects.len() as u32,
+        light_count: facts.lights.lit.len() as u32,
+        air_light_count: facts.lights.in_air.len() as u32,
+        max_height_m: facts.water.surface.max_height_m() as f32,
+        max_slope: facts.water.surface.max_slope() as f32,
+        ior: facts.water.ior as f32,
+        sky_transmittance: facts.lights.sky.transmittance as f32,
+        sky_path_factor: facts.lights.sky.path_factor as f32,
         layers: facts.quality.layers,
         sample_index,
         sample_offset: offset.map(|o| o as f32),

@@ -22,7 +22,7 @@ pub const PASS: PassDesc = PassDesc {
     writes: &[Slot::VisibleIrradiance],
     wanted: |facts| {
         wanted_for_camera(facts)?;
-        if facts.wants_camera_irradiance() {
+        if facts.output.wants_irradiance() {
             Ok("the picture needs the light on what it shows".to_owned())
         } else {
             Err("neither radiance nor irradiance is among the layers".to_owned())
@@ -40,7 +40,7 @@ pub const PASS: PassDesc = PassDesc {
 fn air_lights(facts: &SceneFacts) -> Vec<u8> {
     // No more than that pass the facts.
     let mut all = [AirLight::default(); MOST_LIGHTS];
-    for (slot, light) in all.iter_mut().zip(&facts.air_lights) {
+    for (slot, light) in all.iter_mut().zip(&facts.lights.in_air) {
         *slot = AirLight {
             source: match light.source {
                 Source::Sun { to_light } => vec4(to_light, 0.0),

@@ -35,17 +35,20 @@ pub const PASS: PassDesc = PassDesc {
             .filter(|c| c.light.is_none())
             .collect();
         let own: Vec<Compared> = (compared.iter().copied())
-            .filter(|c| c.light == Some(index))
+            .filter(|c| c.light == Some(facts.lights.beam_sets[index].light))
             .collect();
         let light = light_uniform(facts, index, wide_sums);
-        let pieces = [(floors, index > 0), (own, false)];
+        let pieces = [
+            (floors, index > 0),
+            (own, !facts.lights.is_first_of_light(index)),
+        ];
         let wanted = pieces.iter().filter(|(piece, _)| !piece.is_empty());
         wanted
             .map(|(piece, adds)| {
                 let first_group = piece[0].comparison.first_group;
                 let group_count = estimate::groups_of(piece) - first_group;
                 let coarse_light = CoarseLight {
-                    power: vec4(facts.lights[index].power, 0.0),
+                    power: vec4(facts.lights.beam_sets[index].power, 0.0),
                     first_group,
                     group_count,
                     comparison_count: compared.len() as u32,

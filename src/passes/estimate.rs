@@ -100,14 +100,14 @@ pub fn compared(facts: &SceneFacts) -> Vec<Compared> {
             light,
         });
     };
-    if let (Some(fine), Some(low)) = (facts.floor_map, coarse_floor) {
+    if let (Some(fine), Some(low)) = (facts.receivers.floor_map, coarse_floor) {
         let size = fine.rect.size();
         let comparison = Comparison {
             fine_width: fine.width,
             fine_height: fine.height,
             coarse_width: low.width,
             coarse_height: low.height,
-            blocks: u32::from(facts.camera.is_none()),
+            blocks: u32::from(facts.output.camera.is_none()),
             ..Comparison::default()
         };
         let texel_m2 = size.x * size.y / (f64::from(fine.width) * f64::from(fine.height));
@@ -118,7 +118,7 @@ pub fn compared(facts: &SceneFacts) -> Vec<Compared> {
         MapLayout::with_floor(facts, coarse_floor),
     );
     let layers = facts.quality.layers;
-    for (index, light) in facts.lights.iter().enumerate() {
+    for (index, light) in facts.lights.lit.iter().enumerate() {
         for (object, level_box) in light.boxes.iter().enumerate() {
             let Some(level_box) = level_box else { continue };
             let side = level_box.key.texels;
@@ -143,9 +143,11 @@ pub fn compared(facts: &SceneFacts) -> Vec<Compared> {
 
 /// Whether a map of an object is of what the output shows.
 fn is_asked_for(facts: &SceneFacts, object: usize, layer: u32) -> bool {
-    match facts.map_receiver {
+    match facts.output.receiver {
         None => true,
-        Some(Receiver::Object(wanted)) => wanted as usize == object && layer == facts.map_layer,
+        Some(Receiver::Object(wanted)) => {
+            wanted as usize == object && layer == facts.output.receiver_layer
+        }
         Some(Receiver::Floor(_)) => false,
     }
 }
@@ -174,12 +176,12 @@ pub fn coarse_cells(facts: &SceneFacts) -> u32 {
 ///
 /// A view's map is always halved, since it is looked up between its texels.
 pub fn coarse_floor_map(facts: &SceneFacts) -> Option<FloorMap> {
-    let map = facts.floor_map?;
+    let map = facts.receivers.floor_map?;
     let sides = [map.width, map.height];
     let quarters = |texels: u32| {
         texels.is_multiple_of(QUARTER) && texels / QUARTER >= facts.quality.water_cells
     };
-    let is_view = facts.camera.is_some();
+    let is_view = facts.output.camera.is_some();
     let [width, height] = if !is_view && sides.into_iter().all(quarters) {
         sides.map(|texels| texels / QUARTER)
     } else {
@@ -209,7 +211,7 @@ impl SceneFacts {
         let mut coarse = self.clone();
         coarse.quality.water_cells = coarse_cells(self);
         coarse.quality.split_levels = self.quality.split_levels.saturating_sub(1);
-        coarse.floor_map = coarse_floor_map(self);
+        coarse.receivers.floor_map = coarse_floor_map(self);
         coarse
     }
 }

@@ -19,7 +19,7 @@ pub const PASS: PassDesc = PassDesc {
     wanted: |facts| {
         wanted_for_light(facts)?;
         let mut parts = Vec::new();
-        if let Some(map) = facts.floor_map {
+        if let Some(map) = facts.receivers.floor_map {
             parts.push(format!(
                 "the floor's map of {} × {} texels",
                 map.width, map.height
@@ -33,17 +33,19 @@ pub const PASS: PassDesc = PassDesc {
 
 /// How many maps of objects there are, and how large.
 fn object_maps(facts: &SceneFacts) -> Option<String> {
-    let all = match facts.map_receiver {
+    let all = match facts.output.receiver {
         None => facts.wet_objects().count() as u32 * facts.quality.layers,
         Some(Receiver::Floor(_)) => 0,
         Some(Receiver::Object(_)) => 1,
     };
-    let most = facts.wet_objects().map(|o| facts.objects[o].map_texels);
+    let most = facts
+        .wet_objects()
+        .map(|o| facts.receivers.objects[o].map_texels);
     let most = most.max().filter(|_| all > 0)?;
     let of_layers = match facts.quality.layers {
         1 => String::new(),
-        layers if facts.map_receiver.is_none() => format!(", {layers} for each object"),
-        layers => format!(", layer {} of {layers}", facts.map_layer),
+        layers if facts.output.receiver.is_none() => format!(", {layers} for each object"),
+        layers => format!(", layer {} of {layers}", facts.output.receiver_layer),
     };
     Some(format!(
         "{all} object map{} of {most}² texels{of_layers}{}",
@@ -65,7 +67,8 @@ struct Piece {
 /// The pieces that anything reads: a camera the floor's map and those of all objects, which lie one behind the other; a map is of
 /// one receiver.
 fn pieces(facts: &SceneFacts, index: usize) -> Vec<Piece> {
-    let all = receivers(facts, index, |_| 0);
+    let light = facts.lights.beam_sets[index].light;
+    let all = receivers(facts, light, |_| 0);
     let layers = facts.quality.layers as usize;
     let one = |number: usize| {
         all.get(number).map(|receiver| Piece {
@@ -76,17 +79,19 @@ fn pieces(facts: &SceneFacts, index: usize) -> Vec<Piece> {
             receivers: 0,
         })
     };
-    let pieces = match facts.map_receiver {
+    let pieces = match facts.output.receiver {
         Some(Receiver::Floor(_)) => vec![one(0)],
         Some(Receiver::Object(object)) => {
-            vec![one(1 + object as usize * layers + facts.map_layer as usize)]
+            vec![one(1
+                + object as usize * layers
+                + facts.output.receiver_layer as usize)]
         }
         None => {
             let maps = MapLayout::of(facts);
-            let objects = (!facts.objects.is_empty()).then(|| Piece {
+            let objects = (!facts.receivers.objects.is_empty()).then(|| Piece {
                 first_texel: maps.flux_of(0, 0),
                 texels: u32::try_from(maps.object_texels()).unwrap_or(u32::MAX),
-                first_output: maps.irradiance_of(index, 0, 0),
+                first_output: maps.irradiance_of(light, 0, 0),
                 density_per_flux: 0.0,
                 receivers: (all.len() - 1) as u32,
             });
@@ -104,13 +109,18 @@ fn resolve_steps(facts: &SceneFacts, run: Run<'_>) -> Vec<Step> {
     };
     let mut steps = Vec::new();
     for piece in pieces(facts, index) {
-        let is_floor = piece.first_texel == 0 && facts.floor_map.is_some();
+        let is_floor = piece.first_texel == 0 && facts.receivers.floor_map.is_some();
         let resolve = Resolve {
-            power: vec4(facts.lights[index].power, 0.0),
+            power: vec4(facts.lights.beam_sets[index].power, 0.0),
             first_texel: piece.first_texel,
             texel_count: piece.texels,
             first_output: piece.first_output,
-            adds: u32::from(is_floor && index > 0),
+            // Every beam set adds to the floor's map, those of a light to its maps of objects.
+            adds: u32::from(if is_floor {
+                index > 0
+            } else {
+                !facts.lights.is_first_of_light(index)
+            }),
             density_per_flux: piece.density_per_flux,
             receiver_count: piece.receivers,
             ..Resolve::default()

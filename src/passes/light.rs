@@ -10,7 +10,7 @@ use super::gpu_data::{Light, Receiver, vec2, vec4};
 use super::maps::MapLayout;
 use crate::facts::source::Source;
 use crate::facts::window::Rect;
-use crate::facts::{LightFacts, SceneFacts};
+use crate::facts::{BeamSet, SceneFacts};
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::solid_angle::solid_angle;
 
@@ -47,12 +47,12 @@ const LEAST_BEAM_SR: f64 = 1e-20;
 const OCTAHEDRAL_SR: f64 = 1.5 * 5.196_152_422_706_632;
 
 /// Flux that one beam can carry at most from a light of unit power.
-fn largest_beam(facts: &SceneFacts, light: &LightFacts) -> f64 {
+fn largest_beam(facts: &SceneFacts, light: &BeamSet) -> f64 {
     let cell = light.grid.places.size() / f64::from(facts.quality.water_cells);
     match light.source {
         Source::Sun { to_light } => {
             let sideways = DVec2::new(to_light.x, to_light.z).length();
-            0.5 * cell.x * cell.y * (to_light.y + facts.surface.max_slope() * sideways)
+            0.5 * cell.x * cell.y * (to_light.y + facts.water.surface.max_slope() * sideways)
         }
         Source::Submerged { .. } => (0.5 * cell.x * cell.y * OCTAHEDRAL_SR).min(TAU),
         Source::Point { position_m } => lamp_beam(facts, light, position_m, cell),
@@ -61,19 +61,19 @@ fn largest_beam(facts: &SceneFacts, light: &LightFacts) -> f64 {
 
 /// Most of a light's flux that any water lets through: near the horizon little, and what is summed has to count that finely. 1 of a point
 /// light, and where nothing goes through.
-fn brightest_transmittance(facts: &SceneFacts, light: &LightFacts) -> f64 {
+fn brightest_transmittance(facts: &SceneFacts, light: &BeamSet) -> f64 {
     let Source::Sun { to_light } = light.source else {
         return 1.0;
     };
-    let tilt = facts.surface.max_slope().atan();
+    let tilt = facts.water.surface.max_slope().atan();
     let to_normal = (to_light.y.clamp(0.0, 1.0).acos() - tilt).max(0.0);
-    let most = fresnel_transmittance(to_normal.cos(), facts.ior);
+    let most = fresnel_transmittance(to_normal.cos(), facts.water.ior);
     if most > 0.0 { most } else { 1.0 }
 }
 
 /// Largest solid angle of half a cell, sr: its area seen from the light's height and the steepest slope, over the square of its least
 /// distance, and never more than half of all directions.
-fn lamp_beam(facts: &SceneFacts, light: &LightFacts, position_m: DVec3, cell: DVec2) -> f64 {
+fn lamp_beam(facts: &SceneFacts, light: &BeamSet, position_m: DVec3, cell: DVec2) -> f64 {
     let grid = &light.grid;
     // Per piece of an axis: the largest cell side in it, and its least distance from the light's foot.
     let pieces = |axis: usize| -> Vec<(f64, f64)> {
@@ -95,9 +95,9 @@ fn lamp_beam(facts: &SceneFacts, light: &LightFacts, position_m: DVec3, cell: DV
             .collect()
     };
     let (along_x, along_z) = (pieces(0), pieces(1));
-    let crest_m = facts.surface.max_height_m();
+    let crest_m = facts.water.surface.max_height_m();
     let rise_m = (position_m.y - crest_m).max(0.0);
-    let steepest = facts.surface.max_slope();
+    let steepest = facts.water.surface.max_slope();
     let mut largest = LEAST_BEAM_SR;
     for &(side_x, near_x) in &along_x {
         for &(side_z, near_z) in &along_z {
@@ -118,7 +118,7 @@ fn lamp_beam(facts: &SceneFacts, light: &LightFacts, position_m: DVec3, cell: DV
 
 /// The uniform of one light.
 pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u8> {
-    let light = &facts.lights[index];
+    let light = &facts.lights.beam_sets[index];
     let cells = facts.quality.water_cells;
     let beam = largest_beam(facts, light);
     let (source, kind) = match light.source {
@@ -132,14 +132,14 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
         });
     let uniform = Light {
         source: vec4(source, 0.0),
-        extinction_per_m: vec4(facts.extinction_per_m, 0.0),
+        extinction_per_m: vec4(light.band.extinction_per_m, 0.0),
         window_min: vec2(light.grid.places.min),
         cell: vec2(light.grid.places.size() / f64::from(cells)),
         cells,
-        wave_count: facts.surface.components.len() as u32,
-        object_count: facts.objects.len() as u32,
-        has_floor: u32::from(facts.floor.is_some()),
-        ior: facts.ior as f32,
+        wave_count: facts.water.surface.components.len() as u32,
+        object_count: facts.receivers.objects.len() as u32,
+        has_floor: u32::from(facts.receivers.floor.is_some()),
+        ior: light.band.ior as f32,
         flux_scale: flux_scale(facts, index, wide_sums) as f32,
         energy_scale: energy_scale(facts, index) as f32,
         channels: facts.channels(),
@@ -164,7 +164,7 @@ pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
     } else {
         1.0
     };
-    let light = &facts.lights[index];
+    let light = &facts.lights.beam_sets[index];
     let beams = 2.0 * f64::from(facts.quality.water_cells).powi(2);
     let mut all = largest_beam(facts, light) * beams;
     if light.source.position_m().is_some() {
@@ -179,7 +179,7 @@ pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
 /// Wide sums take the largest beam at 2⁴⁰. Narrow ones take it at 2³⁰ at most and leave room for [`NARROW_HEADROOM`] times the
 /// flux of an evenly lit texel.
 pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
-    let light = &facts.lights[index];
+    let light = &facts.lights.beam_sets[index];
     let beam = largest_beam(facts, light) * brightest_transmittance(facts, light);
     if wide_sums {
         return (WIDE_BEAM_COUNTS / beam).log2().floor().exp2();
@@ -201,18 +201,18 @@ struct TexelFlux {
 
 /// That of each map that is asked for.
 fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelFlux> {
-    let light = &facts.lights[index];
+    let light = &facts.lights.beam_sets[index];
     let transmittance = brightest_transmittance(facts, light);
     let even = |flux: f64| TexelFlux {
         brightest: flux,
         mean: flux,
     };
-    let floor = facts.floor_map.map(move |map| {
+    let floor = facts.receivers.floor_map.map(move |map| {
         let texels = f64::from(map.width) * f64::from(map.height);
         let area_m2 = map.rect.size().x * map.rect.size().y / texels;
-        match (light.source, &facts.floor) {
+        match (light.source, &facts.receivers.floor) {
             (Source::Sun { to_light }, _) => even(transmittance * to_light.y * area_m2),
-            (_, Some(floor)) => lamp_on_floor(light, &map.rect, floor.y_m, facts.ior, texels),
+            (_, Some(floor)) => lamp_on_floor(light, &map.rect, floor.y_m, facts.water.ior, texels),
             (_, None) => even(area_m2),
         }
     });
@@ -221,7 +221,12 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
         let layers = facts.quality.layers;
         (0..layers).any(|layer| maps.holds(object, layer))
     };
-    let objects = light.boxes.iter().zip(&facts.objects).enumerate();
+    let objects = facts
+        .lights
+        .boxes_of(light)
+        .iter()
+        .zip(&facts.receivers.objects)
+        .enumerate();
     let objects = objects.filter(move |(number, _)| is_asked(*number));
     let objects = objects.filter_map(move |(_, (level_box, object))| {
         let area_m2 = 1.0 / level_box.as_ref()?.density_per_flux;
@@ -229,7 +234,7 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
             return Some(even(transmittance * area_m2));
         };
         let middle_m = object.wet_middle();
-        let rise_m = light.source.seeming_height_m(middle_m.y, facts.ior);
+        let rise_m = light.source.seeming_height_m(middle_m.y, facts.water.ior);
         let way_m = (middle_m - position_m).with_y(rise_m).length();
         let radius_m = 0.5 * (object.max - object.min).length();
         let near_m = (way_m - radius_m).max(0.1 * radius_m).max(1e-6);
@@ -243,7 +248,7 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
 }
 
 /// A point light on the floor's map.
-fn lamp_on_floor(light: &LightFacts, rect: &Rect, y_m: f64, ior: f64, texels: f64) -> TexelFlux {
+fn lamp_on_floor(light: &BeamSet, rect: &Rect, y_m: f64, ior: f64, texels: f64) -> TexelFlux {
     let foot_m = light
         .source
         .position_m()
@@ -267,7 +272,7 @@ fn lamp_on_floor(light: &LightFacts, rect: &Rect, y_m: f64, ior: f64, texels: f6
 }
 
 /// Solid angle of the water's window at rest, seen from a point light above it; of all directions for one under it.
-fn entering_sr(light: &LightFacts) -> f64 {
+fn entering_sr(light: &BeamSet) -> f64 {
     let Source::Point { position_m } = light.source else {
         return 2.0 * TAU;
     };
@@ -301,7 +306,7 @@ pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     } else {
         1.0
     };
-    let light = &facts.lights[index];
+    let light = &facts.lights.beam_sets[index];
     let beams = 2.0 * f64::from(facts.quality.water_cells).powi(2);
     // To a near light most beams are far smaller than the largest.
     if matches!(light.source, Source::Point { .. })
@@ -320,17 +325,17 @@ pub fn has_wrapped(facts: &SceneFacts, index: usize, missing: f64) -> bool {
     missing > 0.5 * WRAP_COUNTS / flux_scale(facts, index, false)
 }
 
-/// The receivers of one light: the floor, then those of the objects, one per layer; `level_map_offset` tells where in the arena an
+/// The receivers of lit light number `light`: the floor, then those of the objects, one per layer; `level_map_offset` tells where in the arena an
 /// object's map lies.
 pub fn receivers(
     facts: &SceneFacts,
-    index: usize,
+    light: usize,
     level_map_offset: impl Fn(usize) -> u32,
 ) -> Vec<Receiver> {
     let mut all = vec![floor_receiver(facts)];
     let maps = MapLayout::of(facts);
     let layers = facts.quality.layers;
-    for (object, level_box) in facts.lights[index].boxes.iter().enumerate() {
+    for (object, level_box) in facts.lights.lit[light].boxes.iter().enumerate() {
         let Some(level_box) = level_box else {
             // Without texels, but in its place: `density_at` in the shaders looks receivers up by where their maps begin.
             all.extend((0..layers).map(|layer| Receiver {
@@ -363,7 +368,7 @@ pub fn receivers(
         };
         all.extend((0..layers).map(|layer| Receiver {
             map_offset: maps.flux_of(object, layer),
-            irradiance_offset: maps.irradiance_of(index, object, layer),
+            irradiance_offset: maps.irradiance_of(light, object, layer),
             layer,
             ..receiver
         }));
@@ -372,7 +377,7 @@ pub fn receivers(
 }
 
 fn floor_receiver(facts: &SceneFacts) -> Receiver {
-    let Some(floor) = &facts.floor else {
+    let Some(floor) = &facts.receivers.floor else {
         return Receiver::default();
     };
     let mut receiver = Receiver {
@@ -384,7 +389,7 @@ fn floor_receiver(facts: &SceneFacts) -> Receiver {
         density_per_flux: 1.0,
         ..Receiver::default()
     };
-    if let Some(map) = facts.floor_map {
+    if let Some(map) = facts.receivers.floor_map {
         let per_m = DVec2::new(f64::from(map.width), f64::from(map.height)) / map.rect.size();
         receiver.u_row = [per_m.x as f32, 0.0, 0.0, (-map.rect.min.x * per_m.x) as f32];
         receiver.v_row = [0.0, 0.0, per_m.y as f32, (-map.rect.min.y * per_m.y) as f32];

@@ -37,7 +37,7 @@ pub struct MapLayout {
 impl MapLayout {
     /// The layout for a scene.
     pub fn of(facts: &SceneFacts) -> Self {
-        Self::with_floor(facts, facts.floor_map)
+        Self::with_floor(facts, facts.receivers.floor_map)
     }
 
     /// The layout for a scene with another map of the floor.
@@ -45,6 +45,7 @@ impl MapLayout {
         let floor = floor_map.map_or(0, |map| u64::from(map.width) * u64::from(map.height));
         let mut end = floor;
         let objects = facts
+            .receivers
             .objects
             .iter()
             .enumerate()
@@ -67,7 +68,7 @@ impl MapLayout {
             floor,
             objects,
             per_light: end - floor,
-            lights: facts.lights.len() as u64,
+            lights: facts.lights.lit.len() as u64,
         }
     }
 
@@ -128,9 +129,9 @@ impl MapLayout {
 
 /// Layers of an object that are read by anyone: a camera reads all, planes light all that rays stop at, an irradiance map is one.
 fn asked_layers(facts: &SceneFacts, object: usize) -> Range<u32> {
-    match facts.map_receiver {
+    match facts.output.receiver {
         Some(Receiver::Object(wanted)) if wanted as usize == object && !places_by_planes(facts) => {
-            facts.map_layer..facts.map_layer + 1
+            facts.output.receiver_layer..facts.output.receiver_layer + 1
         }
         Some(_) if !places_by_planes(facts) => 0..0,
         _ => 0..facts.quality.layers,

@@ -13,7 +13,8 @@ pub(super) const WIDE_DISPATCH: u32 = 4;
 
 /// The wet objects of a light, with the texels along a side of their maps.
 pub(super) fn objects_of(facts: &SceneFacts, light: usize) -> Vec<(usize, u32)> {
-    let boxes = facts.lights[light].boxes.iter().enumerate();
+    let set = &facts.lights.beam_sets[light];
+    let boxes = facts.lights.boxes_of(set).iter().enumerate();
     boxes
         .filter_map(|(object, level_box)| Some((object, level_box.as_ref()?.key.texels)))
         .collect()

@@ -18,7 +18,7 @@ pub const PASS: PassDesc = PassDesc {
     writes: &[Slot::Radiance],
     wanted: |facts| {
         wanted_for_camera(facts)?;
-        if facts.wants(LayerName::Radiance) {
+        if facts.output.wants(LayerName::Radiance) {
             Ok("the radiance layer is asked for".to_owned())
         } else {
             Err("radiance is not among the layers".to_owned())

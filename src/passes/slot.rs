@@ -322,7 +322,7 @@ impl Slot {
     pub fn bytes(self, facts: &SceneFacts) -> u64 {
         let side = u64::from(facts.quality.water_cells) + 1;
         let cells = u64::from(facts.quality.water_cells);
-        let pixels = facts.camera.map_or(0, |c| {
+        let pixels = facts.output.camera.map_or(0, |c| {
             u64::from(c.width) * u64::from(band_rows(c.width, c.height))
         });
         match self {
@@ -335,8 +335,8 @@ impl Slot {
                     + 2 * u64::from(split_wides(facts)))
             }
             Self::BeamQueue => 4 * (CULL_HEAD_WORDS + 2 * cells * cells),
-            Self::PlaneLists => 4 * plane_list_words(facts) * facts.objects.len() as u64,
-            Self::PlaneCounts => 16 * facts.objects.len() as u64,
+            Self::PlaneLists => 4 * plane_list_words(facts) * facts.receivers.objects.len() as u64,
+            Self::PlaneCounts => 16 * facts.receivers.objects.len() as u64,
             Self::Slices => {
                 let planes = u64::from(facts.quality.planes);
                 4 * MapLayout::of(facts).scratch_texels() * (planes + 1)
@@ -362,14 +362,15 @@ impl Slot {
             | Self::VisibleTransport
             | Self::VisibleIrradiance
             | Self::Radiance => 16 * pixels,
-            Self::Waves => 16 * facts.surface.components.len() as u64,
+            Self::Waves => 16 * facts.water.surface.components.len() as u64,
             // At least one: a binding may not be shorter than an element of its array.
             Self::Instances => {
-                size_of::<super::gpu_data::Instance>() as u64 * facts.objects.len().max(1) as u64
+                size_of::<super::gpu_data::Instance>() as u64
+                    * facts.receivers.objects.len().max(1) as u64
             }
             Self::Receivers => receiver_bytes(facts),
-            Self::AllReceivers => receiver_bytes(facts) * facts.lights.len().max(1) as u64,
-            Self::Geometry => facts.geometry_bytes,
+            Self::AllReceivers => receiver_bytes(facts) * facts.lights.lit.len().max(1) as u64,
+            Self::Geometry => facts.receivers.geometry_bytes,
             Self::LevelMaps => 0,
         }
     }
@@ -401,7 +402,7 @@ pub fn draw_target_bytes(key: &LevelMapKey) -> u64 {
 
 /// Bytes of the estimate's sums, which wait for the host beside any other result.
 pub fn differences_beside(facts: &SceneFacts) -> u64 {
-    if facts.quality.estimate_error && !facts.lights.is_empty() {
+    if facts.quality.estimate_error && !facts.lights.beam_sets.is_empty() {
         Slot::Differences.bytes(facts)
     } else {
         0
@@ -412,11 +413,11 @@ pub fn differences_beside(facts: &SceneFacts) -> u64 {
 pub fn readback_bytes(facts: &SceneFacts) -> u64 {
     let beside = differences_beside(facts);
     beside
-        + match facts.camera {
+        + match facts.output.camera {
             Some(camera) => {
                 16 * u64::from(camera.width) * u64::from(band_rows(camera.width, camera.height))
             }
-            None if facts.lights.is_empty() => 0,
+            None if facts.lights.beam_sets.is_empty() => 0,
             None => 12 * MapLayout::of(facts).irradiance_texels(),
         }
 }
@@ -448,7 +449,7 @@ pub fn split_wides(facts: &SceneFacts) -> u32 {
 
 /// Bytes of the receivers of one light.
 fn receiver_bytes(facts: &SceneFacts) -> u64 {
-    let receivers = 1 + facts.objects.len() as u64 * u64::from(facts.quality.layers);
+    let receivers = 1 + facts.receivers.objects.len() as u64 * u64::from(facts.quality.layers);
     size_of::<super::gpu_data::Receiver>() as u64 * receivers
 }
 

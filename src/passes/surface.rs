@@ -17,7 +17,10 @@ pub const PASS: PassDesc = PassDesc {
     steps: |facts, run| match run {
         // Its rays start at the light and pass no surface.
         Run::Light { index, .. }
-            if matches!(facts.lights[index].source, Source::Submerged { .. }) =>
+            if matches!(
+                facts.lights.beam_sets[index].source,
+                Source::Submerged { .. }
+            ) =>
         {
             Vec::new()
         }
@@ -30,12 +33,17 @@ pub(super) fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
     if !facts.has_receiver() {
         return Err("nothing under water is to be lit".to_owned());
     }
-    if facts.lights.is_empty() {
+    if facts.lights.beam_sets.is_empty() {
         return Err("no sun above the horizon and no point light shines into the water".to_owned());
     }
-    let waves = facts.surface.components.len();
+    let waves = facts.water.surface.components.len();
     let count = |wanted: fn(&Source) -> bool, name: &str, names: &str| {
-        let count = facts.lights.iter().filter(|s| wanted(&s.source)).count();
+        let count = facts
+            .lights
+            .beam_sets
+            .iter()
+            .filter(|s| wanted(&s.source))
+            .count();
         match count {
             0 => None,
             1 => Some(format!("1 {name}")),
@@ -69,7 +77,7 @@ pub(super) fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
         } else {
             "shine"
         },
-        if facts.surface.max_slope() == 0.0 {
+        if facts.water.surface.max_slope() == 0.0 {
             "flat water".to_owned()
         } else {
             format!("water with {waves} wave components")

@@ -40,20 +40,27 @@ pub const PASS: PassDesc = PassDesc {
         let Run::Light { index, wide_sums } = run else {
             return Vec::new();
         };
-        if matches!(facts.lights[index].source, Source::Submerged { .. }) {
+        if matches!(
+            facts.lights.beam_sets[index].source,
+            Source::Submerged { .. }
+        ) {
             return Vec::new();
         }
         let ways = facts.unfollowed_ways();
         let least_step_m = if ways.again || ways.bared {
-            (facts.surface.shortest_wave_m() / STEPS_PER_WAVE).min(LONGEST_STEP_M)
+            (facts.water.surface.shortest_wave_m() / STEPS_PER_WAVE).min(LONGEST_STEP_M)
         } else {
             0.0
         };
         let uniform = Unfollowed {
-            max_height_m: facts.surface.max_height_m() as f32,
-            max_slope: facts.surface.max_slope() as f32,
+            max_height_m: facts.water.surface.max_height_m() as f32,
+            max_slope: facts.water.surface.max_slope() as f32,
             least_step_m: least_step_m as f32,
-            floor_y_m: facts.floor.as_ref().map_or(NO_FLOOR_M, |floor| floor.y_m) as f32,
+            floor_y_m: facts
+                .receivers
+                .floor
+                .as_ref()
+                .map_or(NO_FLOOR_M, |floor| floor.y_m) as f32,
         };
         let groups = facts.quality.water_cells.div_ceil(8);
         vec![Step {

@@ -45,7 +45,8 @@ pub const PASS: PassDesc = PassDesc {
         let light = (index, wide_sums);
         let mut steps = Vec::new();
         for (object, texels) in objects_of(facts, index) {
-            let Some(level_box) = &facts.lights[index].boxes[object] else {
+            let set = &facts.lights.beam_sets[index];
+            let Some(level_box) = &facts.lights.boxes_of(set)[object] else {
                 continue;
             };
             let planes = 0..facts.planes_of(object);
@@ -88,7 +89,7 @@ fn slice_step(
     let work = Work::DrawSlice {
         plane,
         texels: level_box.key.texels,
-        vertices: 3 * facts.objects[object].triangles,
+        vertices: 3 * facts.receivers.objects[object].triangles,
     };
     let mut step = plane_step(facts, light, (object, plane), "slice_vertex", work);
     let view = bytemuck::bytes_of(&view).to_vec();

@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
-use crate::facts::{SceneFacts, Wanted};
 use crate::passes::{self, PassDesc, Repeat, Slot, slot};
 use crate::scene::LayerName;
 use crate::stats::{AbsentPass, ChosenDials, Warning};
@@ -69,6 +69,17 @@ pub enum PlanError {
     },
 }
 
+/// How much of a frame is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// All that the output asks for.
+    Frame,
+    /// Nothing but the light's own estimate of its error.
+    Estimate,
+    /// Nothing but the level maps, for frames to come.
+    LevelMaps,
+}
+
 /// What is already on the GPU.
 pub trait Cached {
     /// Whether this level map is there.
@@ -112,22 +123,23 @@ impl Cached for WarmCache {
     }
 }
 
-/// The slots that hold what the output asks for.
-pub fn awaited(facts: &SceneFacts) -> BTreeSet<Slot> {
-    let estimate =
-        (facts.quality.estimate_error && !facts.lights.is_empty()).then_some(Slot::Differences);
-    match facts.wanted {
+/// The slots that hold what is wanted of a scene's output.
+pub fn awaited(facts: &SceneFacts, wanted: Wanted) -> BTreeSet<Slot> {
+    let estimate = (facts.quality.estimate_error && !facts.lights.beam_sets.is_empty())
+        .then_some(Slot::Differences);
+    match wanted {
         Wanted::LevelMaps => return BTreeSet::from([Slot::LevelMaps]),
         Wanted::Estimate => return estimate.into_iter().collect(),
         Wanted::Frame => {}
     }
-    if facts.camera.is_none() {
+    if facts.output.camera.is_none() {
         return BTreeSet::from([Slot::Irradiance])
             .into_iter()
             .chain(estimate)
             .collect();
     }
     facts
+        .output
         .layers
         .iter()
         .map(|layer| match layer {
@@ -146,6 +158,7 @@ pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
     let mut seen = BTreeSet::new();
     facts
         .lights
+        .lit
         .iter()
         .flat_map(|light| light.boxes.iter().flatten())
         .map(|level_box| &level_box.key)
@@ -157,9 +170,10 @@ pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
 pub fn plan(
     passes: &[&PassDesc],
     facts: &SceneFacts,
+    wanted: Wanted,
     cached: &dyn Cached,
 ) -> Result<Plan, PlanError> {
-    let mut awaiting = awaited(facts);
+    let mut awaiting = awaited(facts, wanted);
     let missing = level_maps(facts)
         .iter()
         .filter(|key| !cached.has_level_map(key))
@@ -183,7 +197,7 @@ pub fn plan(
     absent.reverse();
     absent.extend(absent_effects(facts));
     check_order(&kept, missing == 0)?;
-    let slots = slots(facts, &kept, cached);
+    let slots = slots(facts, wanted, &kept, cached);
     Ok(Plan {
         passes: kept
             .iter()
@@ -242,18 +256,18 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
             "all colour channels fade alike: one is carried for all",
         );
     }
-    if facts.sky_radiance.iter().all(|&l| l == 0.0) {
+    if facts.lights.sky.radiance.iter().all(|&l| l == 0.0) {
         add("sky", "no sky shines");
-    } else if facts.camera.is_none() && facts.map_sky_w_m2.iter().all(|&e| e == 0.0) {
+    } else if facts.output.camera.is_none() && facts.output.sky_w_m2.iter().all(|&e| e == 0.0) {
         add("sky", "output.include_sky is false");
     }
-    if facts.asked_layers > facts.quality.layers {
+    if facts.output.asked_layers > facts.quality.layers {
         add(
             "layers",
             "the output is a map of the floor: nobody looks at the objects' maps",
         );
     }
-    if facts.quality.level_of_detail > 0.0 && facts.camera.is_none() {
+    if facts.quality.level_of_detail > 0.0 && facts.output.camera.is_none() {
         add(
             "level_of_detail",
             "the output is an irradiance map, seen by no camera: every object gets quality.level_map_texels",
@@ -266,10 +280,11 @@ fn runs(repeat: Repeat, facts: &SceneFacts, missing: usize) -> u32 {
     match repeat {
         Repeat::LevelMap => u32::try_from(missing).unwrap_or(u32::MAX),
         Repeat::Light | Repeat::FineLight | Repeat::CoarseLight => {
-            u32::try_from(facts.lights.len()).unwrap_or(u32::MAX)
+            u32::try_from(facts.lights.beam_sets.len()).unwrap_or(u32::MAX)
         }
         Repeat::Frame => 1,
         Repeat::Band => facts
+            .output
             .camera
             .map_or(0, |c| c.height.div_ceil(slot::band_rows(c.width, c.height))),
     }
@@ -298,6 +313,7 @@ fn check_order(kept: &[(&PassDesc, String)], level_maps_cached: bool) -> Result<
 
 fn slots(
     facts: &SceneFacts,
+    wanted: Wanted,
     kept: &[(&PassDesc, String)],
     cached: &dyn Cached,
 ) -> Vec<PlannedSlot> {
@@ -311,9 +327,9 @@ fn slots(
         })
         .copied()
         .collect();
-    let wanted: u64 = level_maps(facts).iter().map(|key| key.bytes()).sum();
+    let level_map_bytes: u64 = level_maps(facts).iter().map(|key| key.bytes()).sum();
     let draws = kept.iter().any(|(pass, _)| pass.repeat == Repeat::LevelMap);
-    let readback_bytes = match facts.wanted {
+    let readback_bytes = match wanted {
         Wanted::LevelMaps => 0,
         Wanted::Frame | Wanted::Estimate => slot::readback_bytes(facts),
     };
@@ -349,7 +365,7 @@ fn slots(
         .map(|slot| {
             let info = slot.info();
             let bytes = match slot {
-                Slot::LevelMaps => cached.arena_bytes(wanted),
+                Slot::LevelMaps => cached.arena_bytes(level_map_bytes),
                 _ => slot.bytes(facts),
             };
             // What is empty and lent out has one element; what is empty and kept is not there at all.
@@ -365,6 +381,10 @@ fn slots(
 }
 
 /// Plans with the program's own passes.
-pub fn plan_scene(facts: &SceneFacts, cached: &dyn Cached) -> Result<Plan, PlanError> {
-    plan(&passes::ALL, facts, cached)
+pub fn plan_scene(
+    facts: &SceneFacts,
+    wanted: Wanted,
+    cached: &dyn Cached,
+) -> Result<Plan, PlanError> {
+    plan(&passes::ALL, facts, wanted, cached)
 }

@@ -60,6 +60,7 @@ impl<'a> Viewer<'a> {
     pub(super) fn of(place: &'a Place) -> Result<Self, ReferenceError> {
         let camera = place
             .facts
+            .output
             .camera
             .as_ref()
             .ok_or(ReferenceError::NoCamera)?;
@@ -129,9 +130,9 @@ impl<'a> Viewer<'a> {
         let side = if way == Way::Refracted { 1.0 } else { -1.0 };
         let t = self.place.meet_water(ray.from_m, ray.direction, side)?;
         let from_m = ray.from_m + ray.direction * t;
-        let slope = self.place.facts.surface.at(from_m.x, from_m.z).slope;
+        let slope = self.place.facts.water.surface.at(from_m.x, from_m.z).slope;
         let normal = normal_from_slope(slope.x, slope.y) * side;
-        let ior = self.place.facts.ior;
+        let ior = self.place.facts.water.ior;
         let direction = match way {
             Way::Refracted => refract_direction(ray.direction, normal, ior)?,
             Way::Left => refract_direction(ray.direction, normal, 1.0 / ior)?,
@@ -150,7 +151,7 @@ impl<'a> Viewer<'a> {
         let Ray { from_m, direction } = ray;
         let mut nearest_m = until_m;
         let mut found = None;
-        if let Some(floor) = &self.place.facts.floor
+        if let Some(floor) = &self.place.facts.receivers.floor
             && with_floor
             && direction.y < 0.0
         {

@@ -59,7 +59,7 @@ impl PlacedLight {
 
     /// The ray that enters at `water_m`; `None` where the water faces away from the light.
     pub(super) fn bend(&self, place: &Place, water_m: DVec2) -> Option<Bent> {
-        let SurfacePoint { height_m, slope } = place.facts.surface.at(water_m.x, water_m.y);
+        let SurfacePoint { height_m, slope } = place.facts.water.surface.at(water_m.x, water_m.y);
         let from_m = DVec3::new(water_m.x, height_m, water_m.y);
         let (l, distance_m) = self.toward(from_m);
         let facing = l.y - slope.x * l.x - slope.y * l.z;
@@ -71,7 +71,7 @@ impl PlacedLight {
         let cos_i = normal.dot(l).clamp(0.0, 1.0);
         Some(Bent {
             from_m,
-            direction: -l / place.facts.ior + normal * turn(cos_i, place.facts.ior),
+            direction: -l / place.facts.water.ior + normal * turn(cos_i, place.facts.water.ior),
             facing: facing * self.facing_w_m2(distance_m),
             cos_i,
         })
@@ -82,10 +82,10 @@ impl PlacedLight {
         let facts = &place.facts;
         match (self.source, &self.drift) {
             (Source::Sun { to_light }, _) => {
-                window_of(&facts.surface, to_light, facts.ior, &[target])
+                window_of(&facts.water.surface, to_light, facts.water.ior, &[target])
             }
             (Source::Point { position_m }, Some(drift)) => {
-                drift.window(facts.surface.max_height_m(), position_m, &[target])
+                drift.window(facts.water.surface.max_height_m(), position_m, &[target])
             }
             _ => LightWindow::empty(),
         }
@@ -102,7 +102,7 @@ impl PlacedLight {
         position_m: DVec3,
         (p_m, normal, square_m2): (DVec3, DVec3, f64),
     ) -> Rings {
-        let (surface, n) = (&place.facts.surface, place.facts.ior);
+        let (surface, n) = (&place.facts.water.surface, place.facts.water.ior);
         let foot_m = DVec2::new(position_m.x, position_m.z);
         let water_m = surface.at(foot_m.x, foot_m.y).height_m;
         let h = (position_m.y - water_m).max(f64::MIN_POSITIVE.sqrt());

@@ -48,18 +48,23 @@ pub(super) fn object_map(
         });
     }
     let side = resolved.scene.quality.level_map_texels;
-    let facts = &place.facts.objects[object];
+    let facts = &place.facts.receivers.objects[object];
     let light = place.lights.first().filter(|_| facts.wet);
     let axis = light.and_then(|light| {
         let middle_m = facts.wet_middle();
-        light.source.direction_at(middle_m, place.facts.ior)
+        light.source.direction_at(middle_m, place.facts.water.ior)
     });
     let (Some(light), Some(axis)) = (light, axis) else {
         progress(1.0);
         return Ok(dark(side));
     };
     let level_box = LevelBox::new(facts, &resolved.meshes[object], axis, 1);
-    let counter = Counter::new(&place, light, &level_box, (object, place.facts.map_layer));
+    let counter = Counter::new(
+        &place,
+        light,
+        &level_box,
+        (object, place.facts.output.receiver_layer),
+    );
     let cosines = counter.cosines(side);
     let (halves, rays) = counter.rounds(&cosines, settings, progress, cancelled)?;
     let [a, b] = &halves;
@@ -323,7 +328,7 @@ impl<'a> Counter<'a> {
         let first_channel = if stopped { 3 } else { 0 };
         for c in 0..3 {
             sum[texel][first_channel + c] += flux
-                * transmission(self.place.facts.extinction_per_m[c], path_m)
+                * transmission(self.place.facts.water.extinction_per_m[c], path_m)
                 * per_point
                 * self.light.power[c];
         }
@@ -336,7 +341,7 @@ impl<'a> Counter<'a> {
 
     /// Whether the way between two points goes through the floor.
     fn behind_floor(&self, from_m: DVec3, to_m: DVec3) -> bool {
-        let Some(floor) = &self.place.facts.floor else {
+        let Some(floor) = &self.place.facts.receivers.floor else {
             return false;
         };
         let fraction = (from_m.y - floor.y_m) / (from_m.y - to_m.y);

@@ -118,7 +118,7 @@ impl<'a> ObjectRays<'a> {
         let texel = edges_m[0].cross(edges_m[1]);
         let (origin, part) = match light.source {
             Source::Sun { to_light } => {
-                let flat = light.source.direction_at(middle_m, place.facts.ior)?;
+                let flat = light.source.direction_at(middle_m, place.facts.water.ior)?;
                 let cells = Cells::of(corner_m, edges_m[0], edges_m[1], flat);
                 let part = cells.around(&light.window(place, bounds));
                 (Origin::Sun(cells, to_light), part)
@@ -151,10 +151,10 @@ impl<'a> ObjectRays<'a> {
         let facts = &self.place.facts;
         let refractor = match &self.origin {
             Origin::Sun(cells, to_light) => Some(RowRefractor::new(
-                &facts.surface,
+                &facts.water.surface,
                 cells.basis_m * lattice.step_m(),
                 *to_light,
-                facts.ior,
+                facts.water.ior,
                 self.end_m,
             )),
             Origin::Lamp(_) | Origin::Cone(_) => None,
@@ -186,7 +186,7 @@ impl<'a> ObjectRays<'a> {
             from_m: bent.from_m,
             to_m,
             path_m,
-            flux: m2 * bent.facing * fresnel_transmittance(bent.cos_i, self.place.facts.ior),
+            flux: m2 * bent.facing * fresnel_transmittance(bent.cos_i, self.place.facts.water.ior),
         })
     }
 }

@@ -147,7 +147,7 @@ impl Patch {
         may_be_shaded: bool,
         stack: &mut Vec<usize>,
     ) -> bool {
-        if let Some(floor) = &place.facts.floor
+        if let Some(floor) = &place.facts.receivers.floor
             && self.object.is_some()
             && to_m.y < floor.y_m
         {
@@ -193,7 +193,7 @@ impl<'a> Search<'a> {
         let bounds = patch.bounds();
         let window = light.window(place, bounds);
         let (corner_m, sides_m) = patch.sides_m();
-        let crest_m = place.facts.surface.max_height_m();
+        let crest_m = place.facts.water.surface.max_height_m();
         let water = Target {
             min_m: DVec3::new(window.min_m.x, bounds.min_m.y, window.min_m.y),
             max_m: DVec3::new(window.max_m.x, crest_m, window.max_m.y),
@@ -295,7 +295,7 @@ impl<'a> Search<'a> {
         if cosine <= 0.0 {
             return Reach::Unknown;
         }
-        let ior = self.place.facts.ior;
+        let ior = self.place.facts.water.ior;
         let least = (cosine - bend - spread).max(0.0);
         let cos_t = (1.0 - (1.0 - least * least) / (ior * ior))
             .max(1e-12)
@@ -345,8 +345,8 @@ impl<'a> Search<'a> {
             return;
         }
         let facts = &self.place.facts;
-        let entered = m2 * ray.facing * fresnel_transmittance(ray.cos_i, facts.ior);
+        let entered = m2 * ray.facing * fresnel_transmittance(ray.cos_i, facts.water.ior);
         let blocked = patch.blocked(self.place, ray.from_m, to_m, self.may_be_shaded, stack);
-        sum.book(entered, facts.extinction_per_m, path_m, blocked);
+        sum.book(entered, facts.water.extinction_per_m, path_m, blocked);
     }
 }

@@ -40,15 +40,15 @@ impl Place {
         let (suns, lamps) = (suns(scene)?, point_lights(scene)?);
         let facts =
             SceneFacts::of(resolved).map_err(|error| ReferenceError::Scene(error.to_string()))?;
-        check_surface(&facts.surface)?;
+        check_surface(&facts.water.surface)?;
         let occluders = Occluders::of(resolved, DVec2::new(facts.origin_m.x, facts.origin_m.z))?;
         let suns = suns.into_iter().cloned().map(Light::Sun);
         let counted = suns.chain(lamps.into_iter().cloned().map(Light::Point));
         let drift = OnceCell::new();
         let lights = counted
-            .filter_map(|light| Source::of(&light, facts.origin_m, &facts.surface))
+            .filter_map(|light| Source::of(&light, facts.origin_m, &facts.water.surface))
             .filter(|(source, power)| {
-                let floor_y_m = facts.floor.as_ref().map(|floor| floor.y_m);
+                let floor_y_m = facts.receivers.floor.as_ref().map(|floor| floor.y_m);
                 let lamp_y_m = source.position_m().map(|p| p.y);
                 let buried = lamp_y_m
                     .zip(floor_y_m)
@@ -58,18 +58,19 @@ impl Place {
             .map(|(source, power)| PlacedLight {
                 source,
                 power,
-                drift: matches!(source, Source::Point { .. })
-                    .then(|| *drift.get_or_init(|| LampDrift::of(&facts.surface, facts.ior))),
+                drift: matches!(source, Source::Point { .. }).then(|| {
+                    *drift.get_or_init(|| LampDrift::of(&facts.water.surface, facts.water.ior))
+                }),
             })
             .collect();
         let derivative = |order: i32| -> f64 {
-            let waves = facts.surface.components.iter();
+            let waves = facts.water.surface.components.iter();
             waves
                 .map(|c| c.amplitude_m * (TAU * c.frequency_per_m.length()).powi(order))
                 .sum()
         };
         Ok(Self {
-            steepest: facts.surface.max_slope(),
+            steepest: facts.water.surface.max_slope(),
             bend_per_m: derivative(2),
             twist_per_m2: derivative(3),
             facts,
@@ -82,7 +83,7 @@ impl Place {
     pub(super) fn curved(&self, water_m: DVec2, radius_m: f64) -> (SurfacePoint, f64) {
         let (mut height_m, mut slope) = (0.0, DVec2::ZERO);
         let (mut xx, mut xz, mut zz) = (0.0, 0.0, 0.0);
-        for c in &self.facts.surface.components {
+        for c in &self.facts.water.surface.components {
             let (sin, cos) = sin_cos_turns(water_m.dot(c.frequency_per_m) + c.phase_turns);
             let k = c.frequency_per_m * TAU;
             let high_m = c.amplitude_m * sin;
@@ -100,7 +101,7 @@ impl Place {
 
     /// Height of `p_m` over the water.
     pub(super) fn over_water_m(&self, p_m: DVec3) -> f64 {
-        p_m.y - self.facts.surface.at(p_m.x, p_m.z).height_m
+        p_m.y - self.facts.water.surface.at(p_m.x, p_m.z).height_m
     }
 
     /// Irradiance of the skies on a surface with unit `normal` at `p_m`, W/m²: in the air the half of the sky it faces, under
@@ -108,18 +109,18 @@ impl Place {
     pub(super) fn sky_w_m2(&self, p_m: DVec3, normal: DVec3, dry: bool) -> [f64; 3] {
         let facts = &self.facts;
         std::array::from_fn(|c| {
-            let radiance = facts.sky_radiance[c];
+            let radiance = facts.lights.sky.radiance[c];
             if dry {
                 sky_irradiance(radiance, 1.0, 0.0, 0.0, 1.0, normal.y, 1.0)
             } else {
                 sky_irradiance(
                     radiance,
-                    facts.sky_transmittance,
-                    facts.extinction_per_m[c],
+                    facts.lights.sky.transmittance,
+                    facts.water.extinction_per_m[c],
                     -p_m.y,
-                    facts.sky_path_factor,
+                    facts.lights.sky.path_factor,
                     normal.y,
-                    1.0 / (facts.ior * facts.ior),
+                    1.0 / (facts.water.ior * facts.water.ior),
                 )
             }
         })
@@ -134,7 +135,7 @@ impl Place {
     pub(super) fn meet_water(&self, from_m: DVec3, direction: DVec3, side: f64) -> Option<f64> {
         /// Steps after which a ray that neither meets the water nor leaves the layer of waves is given up.
         const MOST_STEPS: u32 = 100_000;
-        let crest_m = self.facts.surface.max_height_m();
+        let crest_m = self.facts.water.surface.max_height_m();
         let mut t = 0.0;
         let gap_m = side * from_m.y - crest_m;
         if gap_m > 0.0 {
@@ -148,7 +149,7 @@ impl Place {
         let bend = self.bend_per_m * level2;
         for _ in 0..MOST_STEPS {
             let p = from_m + direction * t;
-            let SurfacePoint { height_m, slope } = self.facts.surface.at(p.x, p.z);
+            let SurfacePoint { height_m, slope } = self.facts.water.surface.at(p.x, p.z);
             let f = side * (p.y - height_m);
             if f <= 1e-14 * (1.0 + p.abs().max_element()) {
                 return Some(t);

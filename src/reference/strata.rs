@@ -30,7 +30,7 @@ impl Strata {
         let middle_m = corner_m + (u_m + v_m) * 0.5;
         match light.source {
             Source::Sun { .. } => {
-                let flat = light.source.direction_at(middle_m, place.facts.ior)?;
+                let flat = light.source.direction_at(middle_m, place.facts.water.ior)?;
                 Some(Self::Cells(Cells::of(corner_m, u_m, v_m, flat)))
             }
             Source::Point { position_m } => {

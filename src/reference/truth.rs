@@ -176,7 +176,8 @@ fn floor(
         output.include_sky = false;
         sky_w_m2 = SceneFacts::of(resolved)
             .map_err(|error| ReferenceError::Scene(error.to_string()))?
-            .map_sky_w_m2;
+            .output
+            .sky_w_m2;
     }
     let map::CountedMap { map, shadow } =
         map::count(&suns_only, &settings.counting(), progress, cancelled)?;

@@ -164,6 +164,7 @@ impl Renderer {
             }
         };
         let waves: Vec<Wave> = facts
+            .water
             .surface
             .components
             .iter()
@@ -183,7 +184,7 @@ impl Renderer {
                 bytemuck::cast_slice(&geometry.instances(facts)),
             );
         }
-        let all: Vec<Receiver> = (0..facts.lights.len())
+        let all: Vec<Receiver> = (0..facts.lights.lit.len())
             .flat_map(|light| self.receivers(facts, light))
             .collect();
         write(Slot::AllReceivers, bytemuck::cast_slice(&all));
@@ -196,7 +197,9 @@ impl Renderer {
 
     pub(super) fn receivers(&self, facts: &SceneFacts, light: usize) -> Vec<Receiver> {
         light::receivers(facts, light, |object| {
-            let key = facts.lights[light].boxes[object].as_ref().map(|b| &b.key);
+            let key = facts.lights.lit[light].boxes[object]
+                .as_ref()
+                .map(|b| &b.key);
             let offset = key
                 .and_then(|key| self.level_maps.offset(key))
                 .unwrap_or_default();
@@ -256,7 +259,10 @@ impl Renderer {
     /// Images for the slices of the largest object, and a depth.
     fn slice_targets(&self, facts: &SceneFacts) -> SliceTargets {
         let wet = facts.wet_objects();
-        let texels = wet.map(|o| facts.objects[o].map_texels).max().unwrap_or(1);
+        let texels = wet
+            .map(|o| facts.receivers.objects[o].map_texels)
+            .max()
+            .unwrap_or(1);
         let texture = |label, format| self.target_texture(label, format, texels);
         SliceTargets {
             colors: (0..facts.quality.planes)

@@ -24,64 +24,106 @@ pub(super) const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
 /// Closure up to which planes are said to conserve energy: that of hits.
 const PLANES_CLOSE: f64 = 1e-5;
 
-/// The accounts of all lights from their raw sums, and what is worth a warning.
+/// The accounts of all lights from the raw sums of their beam sets, and what is worth a warning.
 pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Vec<Warning>) {
+    let mut of_lights: Vec<Option<LightSums>> = vec![None; facts.lights.lit.len()];
+    let of_sets = raw.chunks_exact(ENERGY_TERMS as usize);
+    for (index, (set, terms)) in facts.lights.beam_sets.iter().zip(of_sets).enumerate() {
+        let sums = of_lights[set.light].get_or_insert_with(|| LightSums::new(set.light_index));
+        sums.add(facts, index, terms);
+    }
     let mut accounts = Vec::new();
     let mut warnings = Vec::new();
-    for (index, (light, terms)) in facts
-        .lights
-        .iter()
-        .zip(raw.chunks_exact(ENERGY_TERMS as usize))
-        .enumerate()
-    {
-        let per_count = 1.0 / light::energy_scale(facts, index);
-        let grey = |t: usize| light.power.map(|p| terms[t] as f64 * per_count * p);
-        let spectral = |t: usize| -> [f64; 3] {
-            std::array::from_fn(|c| {
-                let channel = if facts.channels() == 1 { 0 } else { c };
-                terms[t + channel] as f64 * per_count * light.power[c]
-            })
-        };
-        let lost = spectral(term::EXTINGUISHED);
-        let absorbed_share: [f64; 3] = std::array::from_fn(|c| {
-            let extinction = facts.extinction_per_m[c];
-            if extinction > 0.0 {
-                facts.absorption_per_m[c] / extinction
-            } else {
-                1.0
-            }
-        });
-        let mut account = EnergyAccount {
-            light: light.index,
-            emitted_w: grey(term::EMITTED),
-            landed_w: spectral(term::LANDED),
-            absorbed_w: std::array::from_fn(|c| lost[c] * absorbed_share[c]),
-            scattered_w: std::array::from_fn(|c| lost[c] * (1.0 - absorbed_share[c])),
-            reflected_w: grey(term::REFLECTED),
-            left_region_w: spectral(term::LEFT),
-            missed_w: grey(term::MISSED),
-            closure: 0.0,
-        };
-        account.closure = closure(&account);
-        warnings.extend(not_conserved(facts, &account));
-        if terms[term::TORN_COUNT] > 0 {
-            warnings.push(Warning {
-                flux_w: Some(grey(term::TORN)),
-                ..Warning::new("beams_torn", torn_message(light.index, terms))
-            });
-        }
-        warnings.extend(not_followed(light.index, terms, &grey));
-        accounts.push(account);
+    for mut sums in of_lights.into_iter().flatten() {
+        sums.account.closure = closure(&sums.account);
+        warnings.extend(not_conserved(facts, &sums.account));
+        warnings.extend(torn(&sums));
+        warnings.extend(not_followed(&sums));
+        accounts.push(sums.account);
     }
     (accounts, warnings)
 }
 
+/// What the beam sets of a light have summed up.
+#[derive(Clone)]
+struct LightSums {
+    account: EnergyAccount,
+    /// Each term for a light of unit power.
+    unit: [f64; ENERGY_TERMS as usize],
+    /// Each term that is the same in all channels, W.
+    grey_w: [[f64; 3]; ENERGY_TERMS as usize],
+    /// Parts of beams that straddle receivers to the end.
+    torn: u64,
+}
+
+impl LightSums {
+    fn new(light: u32) -> Self {
+        Self {
+            account: EnergyAccount {
+                light,
+                ..EnergyAccount::default()
+            },
+            unit: [0.0; ENERGY_TERMS as usize],
+            grey_w: [[0.0; 3]; ENERGY_TERMS as usize],
+            torn: 0,
+        }
+    }
+
+    /// Adds the raw sums of beam set number `index`.
+    fn add(&mut self, facts: &SceneFacts, index: usize, terms: &[u64]) {
+        let set = &facts.lights.beam_sets[index];
+        let per_count = 1.0 / light::energy_scale(facts, index);
+        let grey = |t: usize| set.power.map(|p| terms[t] as f64 * per_count * p);
+        let spectral = |t: usize| -> [f64; 3] {
+            std::array::from_fn(|c| {
+                let channel = if facts.channels() == 1 { 0 } else { c };
+                terms[t + channel] as f64 * per_count * set.power[c]
+            })
+        };
+        let lost = spectral(term::EXTINGUISHED);
+        let absorbed_share: [f64; 3] = std::array::from_fn(|c| {
+            let extinction = set.band.extinction_per_m[c];
+            if extinction > 0.0 {
+                set.band.absorption_per_m[c] / extinction
+            } else {
+                1.0
+            }
+        });
+        let account = &mut self.account;
+        for c in 0..3 {
+            account.emitted_w[c] += grey(term::EMITTED)[c];
+            account.landed_w[c] += spectral(term::LANDED)[c];
+            account.absorbed_w[c] += lost[c] * absorbed_share[c];
+            account.scattered_w[c] += lost[c] * (1.0 - absorbed_share[c]);
+            account.reflected_w[c] += grey(term::REFLECTED)[c];
+            account.left_region_w[c] += spectral(term::LEFT)[c];
+            account.missed_w[c] += grey(term::MISSED)[c];
+        }
+        for (t, count) in terms.iter().enumerate() {
+            self.unit[t] += *count as f64 * per_count;
+            for (sum, w) in self.grey_w[t].iter_mut().zip(grey(t)) {
+                *sum += w;
+            }
+        }
+        self.torn += terms[term::TORN_COUNT];
+    }
+
+    /// Share of the emitted flux that a term is, percent.
+    fn percent(&self, term: usize) -> f64 {
+        if self.unit[term::EMITTED] > 0.0 {
+            100.0 * self.unit[term] / self.unit[term::EMITTED]
+        } else {
+            0.0
+        }
+    }
+}
+
 /// What took ways that are not followed, as far as it was counted.
-fn not_followed(light: u32, terms: &[u64], flux_w: &dyn Fn(usize) -> [f64; 3]) -> Vec<Warning> {
-    let share = |t: usize| 100.0 * terms[t] as f64 / (terms[term::EMITTED] as f64).max(1.0);
+fn not_followed(sums: &LightSums) -> Vec<Warning> {
+    let light = sums.account.light;
     let measured = |term: usize, warning: Warning| {
-        (terms[term] > 0).then(|| Warning {
-            flux_w: Some(flux_w(term)),
+        (sums.unit[term] > 0.0).then(|| Warning {
+            flux_w: Some(sums.grey_w[term]),
             pointer: Some(format!("/lights/{light}")),
             ..warning
         })
@@ -93,7 +135,7 @@ fn not_followed(light: u32, terms: &[u64], flux_w: &dyn Fn(usize) -> [f64; 3]) -
             "light_leaves_water_again",
             format!(
                 "{:.3} % of the flux of light {light} meets steep waves a second time on its way; it is followed as if it stayed under water",
-                share(term::AGAIN)
+                sums.percent(term::AGAIN)
             ),
         ),
     );
@@ -103,7 +145,7 @@ fn not_followed(light: u32, terms: &[u64], flux_w: &dyn Fn(usize) -> [f64; 3]) -
             "waves_bare_floor",
             format!(
                 "{:.3} % of the flux of light {light} enters where troughs lie below the floor; it falls on the floor refracted, without a way through water",
-                share(term::BARED)
+                sums.percent(term::BARED)
             ),
         ),
     );
@@ -141,8 +183,8 @@ pub(super) fn tell_flux(warnings: &mut [Warning], facts: &SceneFacts, energy: &[
         })
     };
     let undersampled = |account: &EnergyAccount| {
-        let mut lights = facts.lights.iter();
-        let light = lights.find(|light| light.index == account.light)?;
+        let mut lights = facts.lights.beam_sets.iter();
+        let light = lights.find(|set| set.light_index == account.light)?;
         facts.is_undersampled(light).then_some(account.emitted_w)
     };
     for warning in warnings {
@@ -158,13 +200,13 @@ pub(super) fn tell_flux(warnings: &mut [Warning], facts: &SceneFacts, energy: &[
 pub(super) fn planes(facts: &SceneFacts, counts: &[Vec<[u32; 4]>]) -> Vec<PlaneStats> {
     let cells = facts.quality.water_cells;
     let mut all = Vec::new();
-    for (light, counts) in facts.lights.iter().zip(counts) {
+    for (light, counts) in facts.lights.beam_sets.iter().zip(counts) {
         for (object, (level_box, &[kept, used, sub_boxes, _])) in
-            light.boxes.iter().zip(counts).enumerate()
+            facts.lights.boxes_of(light).iter().zip(counts).enumerate()
         {
             if level_box.is_some() {
                 all.push(PlaneStats {
-                    light: light.index,
+                    light: light.light_index,
                     object: object as u32,
                     specified: facts.planes_of(object),
                     used,
@@ -200,21 +242,27 @@ fn not_conserved(facts: &SceneFacts, account: &EnergyAccount) -> Option<Warning>
 }
 
 /// What beams that straddle receivers to the end have come to.
-fn torn_message(light: u32, terms: &[u64]) -> String {
-    let share = |t: usize| 100.0 * terms[t] as f64 / (terms[term::EMITTED] as f64).max(1.0);
+fn torn(sums: &LightSums) -> Option<Warning> {
+    if sums.torn == 0 {
+        return None;
+    }
+    let light = sums.account.light;
     let mut message = format!(
         "{} parts of beams of light {light} with {:.3} % of its flux still straddle receivers after quality.split_levels halvings; each corner took a third",
-        terms[term::TORN_COUNT],
-        share(term::TORN),
+        sums.torn,
+        sums.percent(term::TORN),
     );
-    if terms[term::CUT] > 0 {
+    if sums.unit[term::CUT] > 0.0 {
         let cut = format!(
             "; {:.3} % were halved less often, because so many straddle that the queue was full: fewer quality.split_levels with more quality.water_cells do the same",
-            share(term::CUT)
+            sums.percent(term::CUT)
         );
         message.push_str(&cut);
     }
-    message
+    Some(Warning {
+        flux_w: Some(sums.grey_w[term::TORN]),
+        ..Warning::new("beams_torn", message)
+    })
 }
 
 /// Flux of a light of unit power that is in no term of its raw account; the largest of the channels.
@@ -268,6 +316,7 @@ impl<'a> ViewLayers<'a> {
     pub(super) fn new(facts: &'a SceneFacts, width: u32, height: u32) -> Self {
         let pixels = width as usize * height as usize;
         let layers = facts
+            .output
             .layers
             .iter()
             .map(|&name| {
@@ -392,8 +441,8 @@ pub(super) fn estimated_error(facts: &SceneFacts, differences: &[[f32; 4]]) -> O
         }
     }
     let texels = match (
-        facts.camera,
-        facts.floor_map,
+        facts.output.camera,
+        facts.receivers.floor_map,
         estimate::coarse_floor_map(facts),
     ) {
         (Some(_), ..) => Compared::Between,
@@ -422,10 +471,11 @@ pub(super) struct MapPlace {
 
 /// Where the requested map lies.
 pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
-    if let Some(Receiver::Object(index)) = facts.map_receiver {
-        let texels = facts.objects[index as usize].map_texels;
+    if let Some(Receiver::Object(index)) = facts.output.receiver {
+        let texels = facts.receivers.objects[index as usize].map_texels;
         let found = facts
             .lights
+            .lit
             .first()
             .and_then(|light| light.boxes.get(index as usize))
             .and_then(Option::as_ref);
@@ -435,13 +485,14 @@ pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
             first_texel: u64::from(MapLayout::of(facts).irradiance_of(
                 0,
                 index as usize,
-                facts.map_layer,
+                facts.output.receiver_layer,
             )),
             level_map: found.map(|b| b.key.clone()),
             axis_in_mesh: found.map_or(DVec3::Y, |b| b.axis),
         };
     }
     let (width, height) = facts
+        .receivers
         .floor_map
         .map_or((0, 0), |map| (map.width, map.height));
     MapPlace {
@@ -460,8 +511,8 @@ pub(super) fn finish_map(
     mut values: Vec<f32>,
     normals: Option<&[u32]>,
 ) -> Result<Layer, RenderError> {
-    if let (Some(normals), Some(Receiver::Object(index))) = (normals, facts.map_receiver) {
-        let normal_to_local = facts.objects[index as usize]
+    if let (Some(normals), Some(Receiver::Object(index))) = (normals, facts.output.receiver) {
+        let normal_to_local = facts.receivers.objects[index as usize]
             .local_from_mesh
             .matrix3
             .inverse()
@@ -475,7 +526,7 @@ pub(super) fn finish_map(
         }
     }
     for texel in values.chunks_exact_mut(3) {
-        for (value, sky) in texel.iter_mut().zip(facts.map_sky_w_m2) {
+        for (value, sky) in texel.iter_mut().zip(facts.output.sky_w_m2) {
             *value += sky as f32;
         }
     }

@@ -31,7 +31,7 @@ pub(super) struct Comparison {
 impl Comparison {
     pub(super) fn new(facts: &SceneFacts) -> Self {
         let coarse = facts.coarse();
-        let lights = 0..coarse.lights.len();
+        let lights = 0..coarse.lights.beam_sets.len();
         Self {
             wide_sums: lights
                 .map(|index| light::needs_wide_sums(&coarse, index))

@@ -13,13 +13,13 @@ use super::{
     RenderError, Renderer, RunResult, check_cancelled, collect, geometry, ms_since, slot_name,
     timed,
 };
+use crate::facts::SceneFacts;
 use crate::facts::placement::{LevelBox, LevelMapKey};
-use crate::facts::{SceneFacts, Wanted};
 use crate::gpu::{GpuError, readback};
 use crate::passes::desc::{PassDesc, Repeat, Run};
 use crate::passes::slot::{self, Lifetime, Slot, band_rows};
 use crate::passes::{self, light};
-use crate::plan::{self, Plan};
+use crate::plan::{self, Plan, Wanted};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::{AccuracyStats, TimeStats};
 
@@ -28,12 +28,13 @@ impl Renderer {
         &mut self,
         resolved: &ResolvedScene,
         facts: &SceneFacts,
+        wanted: Wanted,
         plan: &Plan,
         missing: &[LevelMapKey],
         cancel: &CancellationToken,
     ) -> Result<RunResult, RenderError> {
         let buffers = self.prepare(resolved, facts, plan)?;
-        let result = self.run_passes(facts, plan, missing, &buffers, cancel);
+        let result = self.run_passes(facts, wanted, plan, missing, &buffers, cancel);
         let targets = missing.iter().map(slot::draw_target_bytes).max();
         let slices = plan
             .slots
@@ -79,6 +80,7 @@ impl Renderer {
     fn run_passes(
         &mut self,
         facts: &SceneFacts,
+        wanted: Wanted,
         plan: &Plan,
         missing: &[LevelMapKey],
         buffers: &FrameBuffers,
@@ -116,7 +118,7 @@ impl Renderer {
         let lights = if of_lights.is_empty() {
             0
         } else {
-            facts.lights.len()
+            facts.lights.beam_sets.len()
         };
         for light in 0..lights {
             check_cancelled(cancel)?;
@@ -130,7 +132,7 @@ impl Renderer {
                 plane_counts.extend(counts);
             }
             if self.wide_sum_reruns > reruns {
-                widened.push(collect::widened(facts.lights[light].index));
+                widened.push(collect::widened(facts.lights.beam_sets[light].light_index));
             }
         }
         let (energy, mut warnings) = collect::energy(facts, &accounts);
@@ -151,9 +153,9 @@ impl Renderer {
             level_maps_built: u32::try_from(missing.len()).unwrap_or(u32::MAX),
             allocated_bytes: None,
         };
-        if facts.wanted != Wanted::Frame {
+        if wanted != Wanted::Frame {
             // Nothing but what has been sent already.
-        } else if let Some(camera) = facts.camera {
+        } else if let Some(camera) = facts.output.camera {
             self.run_bands(
                 facts,
                 camera.width,
@@ -275,7 +277,7 @@ impl Renderer {
     /// Sets the receivers of a light, for what is submitted from now on.
     pub(super) fn set_receivers(&self, facts: &SceneFacts, index: usize, buffers: &FrameBuffers) {
         if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
-            let receivers = self.receivers(facts, index);
+            let receivers = self.receivers(facts, facts.lights.beam_sets[index].light);
             let bytes = bytemuck::cast_slice(&receivers);
             self.gpu.queue.write_buffer(buffer, 0, bytes);
         }
@@ -344,7 +346,7 @@ impl Renderer {
                 self.record_all(&mut encoder, passes, facts, run, buffers, time_ms)?;
                 self.submit(encoder, started, &mut result.time_ms)?;
                 let started = Instant::now();
-                let layers = plan::awaited(facts);
+                let layers = plan::awaited(facts, Wanted::Frame);
                 for slot in layers
                     .into_iter()
                     .filter(|s| s.info().lifetime == Lifetime::Band)
@@ -390,10 +392,11 @@ impl Renderer {
         }
         let mut cosines = None;
         let started = Instant::now();
-        if let (Some(key), true) = (&map.level_map, !facts.lights.is_empty()) {
+        if let (Some(key), true) = (&map.level_map, !facts.lights.beam_sets.is_empty()) {
             let arena = self.arena.as_ref().zip(self.level_maps.offset(key));
             if let Some((arena, offset)) = arena {
-                cosines = Some(self.read_normals(arena, offset, key, facts.map_layer)?);
+                cosines =
+                    Some(self.read_normals(arena, offset, key, facts.output.receiver_layer)?);
             }
         }
         let layer = collect::finish_map(facts, &map, values, cosines.as_deref())?;
@@ -435,6 +438,7 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         let boxes: BTreeMap<&LevelMapKey, &LevelBox> = facts
             .lights
+            .lit
             .iter()
             .flat_map(|light| light.boxes.iter().flatten())
             .map(|level_box| (&level_box.key, level_box))
@@ -484,7 +488,7 @@ struct Sample {
 
 /// The rounds of a view: an even grid in the pixel, and before it one through the middle where layers need it.
 fn samples(facts: &SceneFacts) -> Vec<Sample> {
-    let side = if facts.wants(LayerName::Radiance) {
+    let side = if facts.output.wants(LayerName::Radiance) {
         facts.quality.pixel_samples
     } else {
         1
@@ -500,6 +504,7 @@ fn samples(facts: &SceneFacts) -> Vec<Sample> {
         })
         .collect();
     let other_layers = facts
+        .output
         .layers
         .iter()
         .any(|&layer| layer != LayerName::Radiance);

@@ -87,8 +87,9 @@ impl Geometry {
 
     /// The scene's objects as instances.
     pub(super) fn instances(&self, facts: &SceneFacts) -> Vec<Instance> {
-        let hierarchy = hierarchy_over(&facts.objects);
+        let hierarchy = hierarchy_over(&facts.receivers.objects);
         facts
+            .receivers
             .objects
             .iter()
             .enumerate()

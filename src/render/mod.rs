@@ -27,7 +27,7 @@ use crate::gpu::timing::Timing;
 use crate::gpu::uniforms::Uniforms;
 use crate::gpu::{BindGroups, BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
 use crate::passes::{self, Repeat, Slot, shaders};
-use crate::plan::{self, Cached, Plan};
+use crate::plan::{self, Cached, Plan, Wanted};
 use crate::scene::{ResolvedScene, SceneError};
 use crate::stats::{
     AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
@@ -188,7 +188,7 @@ impl Renderer {
     ) -> Result<Plan, RenderError> {
         let tuned = self.tuned(resolved, cancel)?;
         let facts = SceneFacts::with_warnings(tuned.as_ref().map_or(resolved, |(scene, _)| scene))?;
-        let mut plan = plan::plan_scene(&facts, self)?;
+        let mut plan = plan::plan_scene(&facts, Wanted::Frame, self)?;
         plan.chosen = tuned.map(|(_, chosen)| chosen);
         Ok(plan)
     }
@@ -233,11 +233,11 @@ impl Renderer {
         let asked = resolved;
         let resolved = tuned.as_ref().map_or(asked, |(scene, _)| scene);
         let facts = SceneFacts::with_warnings(resolved)?;
-        let plan = plan::plan_scene(&facts, self)?;
+        let plan = plan::plan_scene(&facts, Wanted::Frame, self)?;
         let plan_ms = ms_since(started);
         let cache_before = self.level_maps.stats();
         let ran = Instant::now();
-        let run = self.run(resolved, &facts, &plan, cancel)?;
+        let run = self.run(resolved, &facts, Wanted::Frame, &plan, cancel)?;
         // Some of the work is done while more is recorded, so that it takes longer than anybody waits.
         let gpu_times = self.timing.collect(&self.gpu, ms_since(ran))?;
         let mut stats = Stats {
@@ -303,6 +303,7 @@ impl Renderer {
         &mut self,
         resolved: &ResolvedScene,
         facts: &SceneFacts,
+        wanted: Wanted,
         plan: &Plan,
         cancel: &CancellationToken,
     ) -> Result<RunResult, RenderError> {
@@ -320,7 +321,7 @@ impl Renderer {
         self.uniforms.begin_frame();
         self.timing.begin_frame();
         self.cutting.begin_frame(cancel);
-        let result = self.execute(resolved, facts, plan, &missing, cancel);
+        let result = self.execute(resolved, facts, wanted, plan, &missing, cancel);
         // Maps that are whole stay, also those of a frame that was cancelled after them.
         self.level_maps.forget_unbuilt();
         if let Err(RenderError::Gpu(_)) = &result {
@@ -543,13 +544,13 @@ fn cache_change(before: &CacheStats, after: &CacheStats) -> CacheStats {
 
 fn exposure(facts: &SceneFacts, resolved: &ResolvedScene) -> ExposureStats {
     let ev = resolved.scene.output.encoding().exposure_ev;
-    let scale = if facts.white_radiance > 0.0 {
-        ev.exp2() / facts.white_radiance
+    let scale = if facts.lights.white_radiance > 0.0 {
+        ev.exp2() / facts.lights.white_radiance
     } else {
         0.0
     };
     ExposureStats {
-        white_radiance: facts.white_radiance,
+        white_radiance: facts.lights.white_radiance,
         ev,
         scale,
     }

@@ -3,8 +3,8 @@
 use tokio_util::sync::CancellationToken;
 
 use super::{RenderError, Renderer};
-use crate::facts::{SceneFacts, Wanted};
-use crate::plan::{self, WarmCache};
+use crate::facts::SceneFacts;
+use crate::plan::{self, Wanted, WarmCache};
 use crate::scene::ResolvedScene;
 use crate::stats::{ChosenDials, Warning};
 use crate::tuning::choose::{self, Prospect};
@@ -118,7 +118,7 @@ impl Renderer {
             let facts = SceneFacts::of(&rung)?;
             let level_maps: u64 = plan::level_maps(&facts).iter().map(|k| k.bytes()).sum();
             let fits = level_maps <= self.level_maps.stats().budget_bytes;
-            match self.check_budget(&plan::plan_scene(&facts, self)?) {
+            match self.check_budget(&plan::plan_scene(&facts, Wanted::Frame, self)?) {
                 Ok(()) if fits => low = middle,
                 Ok(()) => high = middle,
                 Err(RenderError::OverBudget { .. }) => high = middle,
@@ -131,7 +131,7 @@ impl Renderer {
     /// What a warm frame with so many cells will take, ms.
     fn predicted_ms(&self, resolved: &ResolvedScene, cells: u32) -> Result<f64, RenderError> {
         let facts = SceneFacts::of(&with_cells(resolved, cells))?;
-        let plan = plan::plan_scene(&facts, &WarmCache)?;
+        let plan = plan::plan_scene(&facts, Wanted::Frame, &WarmCache)?;
         Ok(cost::predicted_ms(
             &plan,
             &facts,
@@ -149,10 +149,9 @@ impl Renderer {
     ) -> Result<Option<f64>, RenderError> {
         let mut rung = with_cells(resolved, cells);
         rung.scene.quality.estimate_error = true;
-        let mut facts = SceneFacts::of(&rung)?;
-        facts.wanted = Wanted::Estimate;
-        let plan = plan::plan_scene(&facts, self)?;
-        let run = self.run(&rung, &facts, &plan, cancel)?;
+        let facts = SceneFacts::of(&rung)?;
+        let plan = plan::plan_scene(&facts, Wanted::Estimate, self)?;
+        let run = self.run(&rung, &facts, Wanted::Estimate, &plan, cancel)?;
         Ok(run.accuracy.and_then(|accuracy| accuracy.estimated_error))
     }
 }

@@ -6,10 +6,10 @@ use tokio_util::sync::CancellationToken;
 
 use super::{RenderError, Renderer};
 use crate::cache::{WarmUp, WarmedMap};
+use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
-use crate::facts::{SceneFacts, Wanted};
 use crate::mesh::Mesh;
-use crate::plan::{self, Cached as _};
+use crate::plan::{self, Cached as _, Wanted};
 
 impl Renderer {
     /// Builds the level maps that an unrotated, uniformly scaled instance of `mesh` needs under some suns, as a frame would, and
@@ -27,8 +27,7 @@ impl Renderer {
         self.gpu.tidy();
         self.gpu.check()?;
         let resolved = wanted.scene_of(mesh)?;
-        let mut facts = SceneFacts::of(&resolved)?;
-        facts.wanted = Wanted::LevelMaps;
+        let facts = SceneFacts::of(&resolved)?;
         let warmed: Vec<WarmedMap> = keys_by_sun(&facts)
             .zip(&wanted.suns)
             .map(|(key, sun)| WarmedMap {
@@ -40,8 +39,8 @@ impl Renderer {
                 cached: self.has_level_map(key),
             })
             .collect();
-        let plan = plan::plan_scene(&facts, self)?;
-        self.run(&resolved, &facts, &plan, cancel)?;
+        let plan = plan::plan_scene(&facts, Wanted::LevelMaps, self)?;
+        self.run(&resolved, &facts, Wanted::LevelMaps, &plan, cancel)?;
         Ok(warmed)
     }
 }
@@ -50,6 +49,7 @@ impl Renderer {
 fn keys_by_sun(facts: &SceneFacts) -> impl Iterator<Item = &LevelMapKey> {
     let boxes = facts
         .lights
+        .lit
         .iter()
         .flat_map(|light| light.boxes.iter().flatten());
     boxes.map(|level_box| &level_box.key)

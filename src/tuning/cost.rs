@@ -24,15 +24,15 @@ pub struct PassRate {
 /// known.
 pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
     let cells = f64::from(facts.quality.water_cells).powi(2);
-    let waves = facts.surface.components.len() as f64;
+    let waves = facts.water.surface.components.len() as f64;
     let wet = facts.wet_objects().count() as f64;
     let maps = MapLayout::of(facts);
     let texels = maps.flux_texels() as f64;
     let sums = 0.6 + 0.4 * f64::from(facts.channels());
-    let level_texels = (facts.objects.iter())
+    let level_texels = (facts.receivers.objects.iter())
         .map(|o| f64::from(o.map_texels).powi(2))
         .fold(0.0, f64::max);
-    let pixels = facts.camera.map_or(0.0, |camera| {
+    let pixels = facts.output.camera.map_or(0.0, |camera| {
         f64::from(camera.width)
             * f64::from(
                 camera
@@ -56,7 +56,11 @@ pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
             f64::from(facts.quality.water_cells)
                 * f64::from(1_u32 << facts.quality.split_levels)
                 * edges(facts)
-                * (1.0 + waves + (facts.geometry_bytes as f64 / 64.0).max(1.0).log2())
+                * (1.0
+                    + waves
+                    + (facts.receivers.geometry_bytes as f64 / 64.0)
+                        .max(1.0)
+                        .log2())
         }
         // Where rays are looked after, each goes through the waves some dozens of times.
         "unfollowed" => {
@@ -91,7 +95,7 @@ fn compared_places(facts: &SceneFacts, these: impl Fn(&Compared) -> bool) -> f64
 
 /// Those of one light, as a mean: the floor's, to which every light adds, and those of its own maps.
 fn places_of_a_light(facts: &SceneFacts) -> f64 {
-    let lights = facts.lights.len().max(1) as f64;
+    let lights = facts.lights.lit.len().max(1) as f64;
     compared_places(facts, |map| map.light.is_none())
         + compared_places(facts, |map| map.light.is_some()) / lights
 }
@@ -101,12 +105,13 @@ fn edges(facts: &SceneFacts) -> f64 {
     let around_m: f64 = facts
         .wet_objects()
         .map(|index| {
-            let size = facts.objects[index].max - facts.objects[index].min;
+            let size = facts.receivers.objects[index].max - facts.receivers.objects[index].min;
             2.0 * (size.x + size.z)
         })
         .sum();
     let side_m = facts
         .lights
+        .beam_sets
         .iter()
         .map(|light| light.span_m(facts.quality.water_cells))
         .fold(0.0, f64::max);

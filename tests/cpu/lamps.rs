@@ -87,14 +87,14 @@ fn the_waves_at_the_moment_tell_whether_a_light_is_under_water() {
                                         "phase_deg": 90, "period_s": 2 }] });
         let mut scene = pool([0.0, y, 0.0], water, 8);
         scene["time_s"] = json!(time_s);
-        facts(scene).lights[0].source
+        facts(scene).lights.beam_sets[0].source
     };
     assert!(matches!(at(0.0, 0.02), Source::Submerged { .. }));
     assert!(matches!(at(1.0, 0.02), Source::Point { .. }));
     assert!(matches!(at(1.0, -0.02), Source::Point { .. }));
     assert!(matches!(at(1.0, -0.04), Source::Submerged { .. }));
     // On flat water to the millimetre.
-    let flat = |y: f64| facts(pool([0.0, y, 0.0], json!({}), 8)).lights[0].source;
+    let flat = |y: f64| facts(pool([0.0, y, 0.0], json!({}), 8)).lights.beam_sets[0].source;
     assert!(matches!(flat(0.001), Source::Point { .. }));
     assert!(matches!(flat(0.0), Source::Submerged { .. }));
 }
@@ -136,14 +136,14 @@ fn exposure_is_a_number_wherever_the_light_is() {
     for y in [1e6, 1.0, 1e-9, 0.0, -1.0, -2.0, -1e6] {
         let facts = facts(pool([0.0, y, 0.0], json!({}), 8));
         assert!(
-            facts.white_radiance.is_finite() && facts.white_radiance > 0.0,
+            facts.lights.white_radiance.is_finite() && facts.lights.white_radiance > 0.0,
             "{y}"
         );
     }
     // 3 m above the floor's middle: 2 W/sr on the mean, over 9 m².
     let facts = facts(pool([0.0, 1.0, 0.0], json!({}), 8));
     let expected = 2.0 / 9.0 / std::f64::consts::PI;
-    assert!((facts.white_radiance / expected - 1.0).abs() < 1e-12);
+    assert!((facts.lights.white_radiance / expected - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -157,8 +157,8 @@ fn level_maps_look_along_the_refracted_ray_to_the_objects_middle() {
         let mut scene = pool(lamp, json!({}), 8);
         scene["objects"] = json!([{ "mesh": "box.obj", "translation_m": object, "scale": 0.3 }]);
         let facts = facts(scene);
-        let axis = facts.lights[0].boxes[0].as_ref().unwrap().axis;
-        let middle = (facts.objects[0].min + facts.objects[0].max) * 0.5;
+        let axis = facts.lights.lit[0].boxes[0].as_ref().unwrap().axis;
+        let middle = (facts.receivers.objects[0].min + facts.receivers.objects[0].max) * 0.5;
         let lamp_m = DVec3::from(lamp);
         if lamp[1] < 0.0 {
             let straight = (middle - lamp_m).normalize();
@@ -168,7 +168,7 @@ fn level_maps_look_along_the_refracted_ray_to_the_objects_middle() {
         // Back along the axis to the water, and from there to the light: Snell's law holds, and all in one plane.
         let entry = middle + axis * (middle.y / -axis.y);
         let incident = (entry - lamp_m).normalize();
-        let refracted = refract_direction(incident, DVec3::Y, facts.ior).unwrap();
+        let refracted = refract_direction(incident, DVec3::Y, facts.water.ior).unwrap();
         assert!(
             (axis - refracted).length() < 2e-5,
             "{lamp:?}: {axis} and {refracted}"
@@ -239,11 +239,11 @@ fn windows_lose_no_light() {
             scene["objects"] =
                 json!([{ "mesh": "box.obj", "translation_m": [0.5, -0.3, 0], "scale": 0.2 }]);
             let facts = facts(scene);
-            let light = &facts.lights[0];
+            let light = &facts.lights.beam_sets[0];
             let Source::Point { position_m } = light.source else {
                 continue; // a crest stands over it
             };
-            let map = facts.floor_map.unwrap().rect;
+            let map = facts.receivers.floor_map.unwrap().rect;
             // Every place of a region far wider than the window, and a fine one around the light.
             let n = 400;
             for (middle, half) in [
@@ -254,14 +254,15 @@ fn windows_lose_no_light() {
                     for i in 0..n {
                         let at = |k: u32| half * (2.0 * (f64::from(k) + 0.37) / f64::from(n) - 1.0);
                         let place = middle + DVec2::new(at(i), at(j));
-                        let water = facts.surface.at(place.x, place.y);
+                        let water = facts.water.surface.at(place.x, place.y);
                         let from = DVec3::new(place.x, water.height_m, place.y);
                         let to_light = (position_m - from).normalize();
                         let normal = normal(water);
                         if normal.dot(to_light) <= 0.0 {
                             continue;
                         }
-                        let Some(ray) = refract_direction(-to_light, normal, facts.ior) else {
+                        let Some(ray) = refract_direction(-to_light, normal, facts.water.ior)
+                        else {
                             continue;
                         };
                         if ray.y > -1e-2 {
@@ -295,7 +296,7 @@ fn windows_lose_no_light() {
 #[test]
 fn windows_are_no_wider_than_light_needs() {
     let facts = facts(pool([0.0, 0.05, 0.0], json!({}), 8));
-    let size = facts.lights[0].window.size();
+    let size = facts.lights.beam_sets[0].window.size();
     // From r = ρ + 2 m · tan θ_t: what lands 1.42 m aside (the map's corner) has entered 0.06 m aside.
     assert!(size.max_element() < 0.2, "{size}");
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use caustica::facts::SceneFacts;
 use caustica::facts::placement::LevelMapKey;
 use caustica::passes::{self, PassDesc};
-use caustica::plan::{self, Cached, Plan, PlanError};
+use caustica::plan::{self, Cached, Plan, PlanError, Wanted};
 use caustica::scene::ResolvedScene;
 use serde_json::{Value, json};
 
@@ -39,7 +39,7 @@ fn planned(resolved: &ResolvedScene) -> Plan {
 
 fn planned_with(resolved: &ResolvedScene, full: bool) -> Plan {
     let facts = SceneFacts::with_warnings(resolved).unwrap();
-    plan::plan_scene(&facts, &FakeCache { full }).unwrap()
+    plan::plan_scene(&facts, Wanted::Frame, &FakeCache { full }).unwrap()
 }
 
 fn names(plan: &Plan) -> Vec<&str> {
@@ -344,7 +344,12 @@ fn row_of_boxes(detail: f64) -> Value {
 fn maps_go_by_the_size_on_the_picture() {
     let sizes = |detail: f64| -> Vec<u32> {
         let facts = SceneFacts::of(&scene_files::scene(row_of_boxes(detail))).unwrap();
-        let sizes: Vec<u32> = facts.objects.iter().map(|o| o.map_texels).collect();
+        let sizes: Vec<u32> = facts
+            .receivers
+            .objects
+            .iter()
+            .map(|o| o.map_texels)
+            .collect();
         for (object, &texels) in sizes.iter().enumerate() {
             assert_eq!(facts.detail_of(object), f64::from(texels) / 256.0);
             // 51 planes, 50 distances, as many fewer as the map is smaller.
@@ -411,7 +416,8 @@ fn a_pass_that_nobody_feeds_is_an_error() {
     let facts = SceneFacts::of(&scene_files::scene(pool())).unwrap();
     for gone in ["surface", "camera_hits", "hits"] {
         let list: Vec<&PassDesc> = passes::ALL.into_iter().filter(|p| p.name != gone).collect();
-        let error = plan::plan(&list, &facts, &FakeCache { full: false }).unwrap_err();
+        let error =
+            plan::plan(&list, &facts, Wanted::Frame, &FakeCache { full: false }).unwrap_err();
         let PlanError::NothingWrites { slot, .. } = error;
         assert!(!slot.is_empty(), "{gone}");
     }
@@ -423,7 +429,7 @@ fn a_pass_before_its_source_is_an_error() {
     let mut list = passes::ALL.to_vec();
     let place = |name: &str| passes::ALL.iter().position(|p| p.name == name).unwrap();
     list.swap(place("beams"), place("hits"));
-    let error = plan::plan(&list, &facts, &FakeCache { full: false }).unwrap_err();
+    let error = plan::plan(&list, &facts, Wanted::Frame, &FakeCache { full: false }).unwrap_err();
     let expected = PlanError::NothingWrites {
         pass: "hits",
         slot: "beams",
@@ -437,9 +443,9 @@ fn scenes_are_fast_with_narrow_sums_and_extremes_are_exact_with_wide_ones() {
         for cells in ["64", "256", "512", "1024"] {
             let scene = scene_files::load(&name, &[("/quality/water_cells", cells)]);
             let facts = SceneFacts::of(&scene).unwrap();
-            for sun in 0..facts.lights.len() {
+            for sun in 0..facts.lights.beam_sets.len() {
                 let wide = passes::light::needs_wide_sums(&facts, sun);
-                if facts.lights[sun].source.position_m().is_some() {
+                if facts.lights.beam_sets[sun].source.position_m().is_some() {
                     continue; // beams of a lamp differ in size: wide sums are common
                 }
                 // 512² cells are 128 beams for each of the 64² texels of flat.json.
@@ -450,7 +456,7 @@ fn scenes_are_fast_with_narrow_sums_and_extremes_are_exact_with_wide_ones() {
     }
     // The reef's boxes are small for its pool: where their maps are asked for too, their texels would count too coarsely.
     let mut facts = SceneFacts::of(&scene_files::load("reef", &[])).unwrap();
-    facts.map_receiver = None;
+    facts.output.receiver = None;
     assert!(passes::light::needs_wide_sums(&facts, 0));
     for (cells, side) in [("1024", "4"), ("2", "2048")] {
         let changes = [

@@ -48,7 +48,8 @@ fn the_light_done_coarsely_has_coarser_maps_that_divide_the_fine_ones() {
         }));
         let fine = SceneFacts::of(&resolved).unwrap();
         let coarse = fine.coarse();
-        let sides = |facts: &SceneFacts| facts.floor_map.map(|map| [map.width, map.height]);
+        let sides =
+            |facts: &SceneFacts| facts.receivers.floor_map.map(|map| [map.width, map.height]);
         let cells = coarse.quality.water_cells;
         (cells, sides(&coarse).unwrap(), sides(&fine).unwrap())
     };
@@ -78,21 +79,21 @@ fn the_light_done_coarsely_has_coarser_maps_that_divide_the_fine_ones() {
 
 /// Whether any of many rays through a wave's first metre comes out of the water again, by small steps.
 fn comes_out(facts: &SceneFacts) -> bool {
-    let Source::Sun { to_light } = facts.lights[0].source else {
+    let Source::Sun { to_light } = facts.lights.beam_sets[0].source else {
         panic!("no sun");
     };
     (0..40 * 40).any(|at| {
         let (x_m, z_m) = (f64::from(at % 40) / 40.0, f64::from(at / 40) / 40.0);
-        let water = facts.surface.at(x_m, z_m);
+        let water = facts.water.surface.at(x_m, z_m);
         let up = normal(water);
         if up.dot(to_light) <= 0.0 {
             return false;
         }
-        let way = refract_direction(-to_light, up, facts.ior).unwrap();
+        let way = refract_direction(-to_light, up, facts.water.ior).unwrap();
         (1..4000)
             .map(|k| DVec3::new(x_m, water.height_m, z_m) + way * (0.002 * f64::from(k)))
-            .take_while(|p| p.y > -facts.surface.max_height_m())
-            .any(|p| facts.surface.at(p.x, p.z).height_m < p.y)
+            .take_while(|p| p.y > -facts.water.surface.max_height_m())
+            .any(|p| facts.water.surface.at(p.x, p.z).height_m < p.y)
     })
 }
 

@@ -141,12 +141,12 @@ fn receivers_have_the_size_that_slots_reckon_with() {
         Some(slot::Slot::Receivers.bytes(&facts)),
         "the floor and one object"
     );
-    let waves = facts.surface.components.len() as u64;
+    let waves = facts.water.surface.components.len() as u64;
     assert_eq!(
         Some(slot::Slot::Waves.bytes(&facts) / waves),
         size_of("Wave")
     );
-    let objects = facts.objects.len() as u64;
+    let objects = facts.receivers.objects.len() as u64;
     assert_eq!(
         Some(slot::Slot::Instances.bytes(&facts) / objects),
         size_of("Instance")
@@ -267,7 +267,7 @@ fn dispatches_cover_their_work() {
 }
 
 fn floor_texels(facts: &SceneFacts) -> u64 {
-    let map = facts.floor_map.unwrap();
+    let map = facts.receivers.floor_map.unwrap();
     u64::from(map.width) * u64::from(map.height)
 }
 
@@ -300,7 +300,7 @@ fn sums_over_texels_cover_all_of_them() {
 #[test]
 fn every_entry_point_is_run_by_a_step() {
     let facts = facts();
-    let mut level_box = facts.lights[0].boxes[0].clone().unwrap();
+    let mut level_box = facts.lights.lit[0].boxes[0].clone().unwrap();
     level_box.key.layers = 2;
     for pass in passes::ALL {
         let run = match pass.repeat {

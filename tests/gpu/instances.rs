@@ -92,7 +92,12 @@ fn far_objects_get_small_maps_and_the_picture_hardly_changes() {
     scene["quality"]["level_of_detail"] = json!(2);
     let resolved = scene_files::scene(scene);
     let facts = SceneFacts::of(&resolved).unwrap();
-    let mut sizes: Vec<u32> = facts.objects.iter().map(|o| o.map_texels).collect();
+    let mut sizes: Vec<u32> = facts
+        .receivers
+        .objects
+        .iter()
+        .map(|o| o.map_texels)
+        .collect();
     sizes.sort_unstable();
     let detailed = harness::render_with(renderer, &resolved);
     let [a, b] = [&detailed, &full].map(|frame| harness::layer(frame, LayerName::Irradiance));
@@ -156,7 +161,12 @@ fn every_object_has_the_measure_of_its_own_map() {
     });
     let resolved = scene_files::scene(scene);
     let facts = SceneFacts::of(&resolved).unwrap();
-    let sizes: Vec<u32> = facts.objects.iter().map(|o| o.map_texels).collect();
+    let sizes: Vec<u32> = facts
+        .receivers
+        .objects
+        .iter()
+        .map(|o| o.map_texels)
+        .collect();
     assert_eq!(sizes, [64, 16, 32, 16], "by the size on the picture");
     let expected: f64 = resolved
         .scene

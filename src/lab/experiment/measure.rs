@@ -170,6 +170,7 @@ fn plane_point(
     let white_w_m2 = std::f64::consts::PI
         * SceneFacts::of(base)
             .map_err(|error| refused(&error))?
+            .lights
             .white_radiance;
     let pictures = [volumetric, uniform, smart].map(Measured::image);
     let compared: Vec<bool> = (0..pictures[1].rgb.len())

@@ -132,7 +132,8 @@ fn on_corners() -> Value {
 /// Whether that is so: the margin of the window is not for this case to decide.
 fn is_on_corners(resolved: &ResolvedScene) -> Result<bool, Failure> {
     let facts = SceneFacts::of(resolved)?;
-    let (Some(light), Some(map)) = (facts.lights.first(), facts.floor_map) else {
+    let (Some(light), Some(map)) = (facts.lights.beam_sets.first(), facts.receivers.floor_map)
+    else {
         return Ok(false);
     };
     let cells = facts.quality.water_cells;

@@ -16,8 +16,9 @@ const STEPS_PER_WAVE: f64 = 500.0;
 /// Flux (W) under a sun of 1 W/m² that goes under water and comes out of it again on its way: small steps all the way, until the ray is
 /// below the deepest trough or at the floor.
 pub(super) fn flux_leaving_again_w(facts: &SceneFacts) -> f64 {
-    let surface = &facts.surface;
+    let surface = &facts.water.surface;
     let floor_y_m = facts
+        .receivers
         .floor
         .as_ref()
         .map_or(f64::NEG_INFINITY, |floor| floor.y_m);
@@ -25,7 +26,7 @@ pub(super) fn flux_leaving_again_w(facts: &SceneFacts) -> f64 {
     let step_m = surface.shortest_wave_m() / STEPS_PER_WAVE;
     over_window(facts, |start, water, to_light| {
         let up = normal(water);
-        let Some(way) = refract_direction(-to_light, up, facts.ior) else {
+        let Some(way) = refract_direction(-to_light, up, facts.water.ior) else {
             return 0.0;
         };
         let comes_out = (1..)
@@ -51,6 +52,7 @@ pub(super) fn flux_turned_away_w(facts: &SceneFacts) -> f64 {
 /// Flux (W) under a sun of 1 W/m² that goes through water which lies below the floor.
 pub(super) fn flux_below_floor_w(facts: &SceneFacts) -> f64 {
     let floor_y_m = facts
+        .receivers
         .floor
         .as_ref()
         .map_or(f64::NEG_INFINITY, |floor| floor.y_m);
@@ -66,12 +68,12 @@ pub(super) fn flux_below_floor_w(facts: &SceneFacts) -> f64 {
 /// What goes under water where it is `up`, per area of its plan.
 fn transmitted(facts: &SceneFacts, up: DVec3, to_light: DVec3) -> f64 {
     let cos_i = up.dot(to_light).max(0.0);
-    cos_i / up.y * fresnel_transmittance(cos_i, facts.ior)
+    cos_i / up.y * fresnel_transmittance(cos_i, facts.water.ior)
 }
 
 /// The integral of `value` over the window of the first sun, m².
 fn over_window(facts: &SceneFacts, value: impl Fn(DVec3, SurfacePoint, DVec3) -> f64) -> f64 {
-    let light = &facts.lights[0];
+    let light = &facts.lights.beam_sets[0];
     let Source::Sun { to_light } = light.source else {
         return 0.0;
     };
@@ -81,7 +83,7 @@ fn over_window(facts: &SceneFacts, value: impl Fn(DVec3, SurfacePoint, DVec3) ->
         for i in 0..SIDE {
             let x = light.window.min.x + (f64::from(i) + 0.5) * cell.x;
             let z = light.window.min.y + (f64::from(j) + 0.5) * cell.y;
-            let water = facts.surface.at(x, z);
+            let water = facts.water.surface.at(x, z);
             sum += value(DVec3::new(x, water.height_m, z), water, to_light);
         }
     }

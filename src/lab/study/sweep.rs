@@ -134,7 +134,7 @@ pub fn run_study<E: std::error::Error>(
             rgb: truth.irradiance.clone(),
         },
         points: Vec::new(),
-        white_w_m2: std::f64::consts::PI * SceneFacts::of(resolved)?.white_radiance,
+        white_w_m2: std::f64::consts::PI * SceneFacts::of(resolved)?.lights.white_radiance,
     };
     let mut scenes = scenes.into_iter();
     let mut done = 0;

@@ -1,0 +1,169 @@
+//! What a scene asks for: a camera's view, or the irradiance of a receiver.
+
+use glam::{DVec2, DVec3};
+
+use super::SceneFacts;
+use super::receivers::FloorMap;
+use super::window::{self, Rect, Region};
+use crate::physics::sky;
+use crate::scene::ranges::DEFAULT_MAP_SIDE;
+use crate::scene::{Camera, LayerName, Output, Receiver, Scene};
+
+/// What the scene's output is.
+#[derive(Clone, Debug)]
+pub struct OutputFacts {
+    /// The camera of a view.
+    pub camera: Option<CameraFacts>,
+    /// Layers of a view; of an irradiance map only [`LayerName::Irradiance`].
+    pub layers: Vec<LayerName>,
+    /// The receiver of an irradiance map.
+    pub receiver: Option<Receiver>,
+    /// The layer of that receiver, 0 the nearest along the light; of a view and on the floor 0.
+    pub receiver_layer: u32,
+    /// Sky irradiance to be added to an irradiance map on the floor, W/m².
+    pub sky_w_m2: [f64; 3],
+    /// Layers of objects that the scene asks for; `quality.layers` of the facts is 1 where the output has no use for more.
+    pub asked_layers: u32,
+}
+
+/// The camera.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraFacts {
+    /// Eye (or the middle of the image plane).
+    pub eye: DVec3,
+    /// Unit viewing direction.
+    pub forward: DVec3,
+    /// To the right edge of the picture, at unit distance (orthographic: m).
+    pub right: DVec3,
+    /// To the upper edge of the picture.
+    pub up: DVec3,
+    /// Parallel rays.
+    pub orthographic: bool,
+    /// Picture width, pixels.
+    pub width: u32,
+    /// Picture height, pixels.
+    pub height: u32,
+}
+
+impl OutputFacts {
+    /// The output of a scene around the local origin `origin_m`.
+    pub(super) fn of(scene: &Scene, origin_m: DVec3) -> Self {
+        let (camera, layers) = match &scene.output {
+            Output::View(view) => {
+                let camera = scene.camera.as_ref();
+                (
+                    camera.map(|c| camera_facts(c, origin_m, view.width, view.height)),
+                    view.layers.clone(),
+                )
+            }
+            Output::IrradianceMap(_) => (None, vec![LayerName::Irradiance]),
+        };
+        let map = match &scene.output {
+            Output::IrradianceMap(map) => Some(map),
+            Output::View(_) => None,
+        };
+        Self {
+            camera,
+            layers,
+            receiver: map.map(|map| map.receiver),
+            receiver_layer: map.map_or(0, |map| map.layer),
+            sky_w_m2: [0.0; 3],
+            asked_layers: scene.quality.layers,
+        }
+    }
+
+    /// Whether a view of this layer is asked for.
+    pub fn wants(&self, layer: LayerName) -> bool {
+        self.camera.is_some() && self.layers.contains(&layer)
+    }
+
+    /// Whether the irradiance seen by the camera is needed.
+    pub fn wants_irradiance(&self) -> bool {
+        self.wants(LayerName::Radiance) || self.wants(LayerName::Irradiance)
+    }
+
+    /// Whether the output is the irradiance of the floor.
+    pub fn is_floor_map(&self) -> bool {
+        matches!(self.receiver, Some(Receiver::Floor(_)))
+    }
+}
+
+impl SceneFacts {
+    /// Sizes the floor's map for the output, and finds the light of the skies on it.
+    pub(super) fn size_floor_map(&mut self, output: &Output) {
+        match output {
+            Output::View(_) => {
+                let region = match &self.output.camera {
+                    Some(camera) if self.output.wants_irradiance() => {
+                        window::visible_floor(self, camera)
+                    }
+                    _ => Region::Nothing,
+                };
+                if let Region::Rect(rect) = region {
+                    let size = rect.size();
+                    let texel = size.max_element() / f64::from(self.quality.map_texels);
+                    let count = |length: f64| {
+                        ((length / texel).ceil() as u32).clamp(1, self.quality.map_texels)
+                    };
+                    self.receivers.floor_map = Some(FloorMap {
+                        rect,
+                        width: count(size.x),
+                        height: count(size.y),
+                    });
+                }
+            }
+            Output::IrradianceMap(map) => {
+                let Some(floor) = &self.receivers.floor else {
+                    return;
+                };
+                if matches!(map.receiver, Receiver::Object(_)) {
+                    return;
+                }
+                let to_local =
+                    |p: [f64; 2]| DVec2::from(p) - DVec2::new(self.origin_m.x, self.origin_m.z);
+                self.receivers.floor_map = Some(FloorMap {
+                    rect: Rect {
+                        min: map.min_m.map_or(floor.rect.min, to_local),
+                        max: map.max_m.map_or(floor.rect.max, to_local),
+                    },
+                    width: map.width.unwrap_or(DEFAULT_MAP_SIDE),
+                    height: map.height.unwrap_or(DEFAULT_MAP_SIDE),
+                });
+                if map.include_sky {
+                    let (sky, water) = (&self.lights.sky, &self.water);
+                    self.output.sky_w_m2 = std::array::from_fn(|c| {
+                        sky::sky_irradiance(
+                            sky.radiance[c],
+                            sky.transmittance,
+                            water.extinction_per_m[c],
+                            -floor.y_m,
+                            sky.path_factor,
+                            1.0,
+                            1.0 / (water.ior * water.ior),
+                        )
+                    });
+                }
+            }
+        }
+    }
+}
+
+fn camera_facts(camera: &Camera, origin_m: DVec3, width: u32, height: u32) -> CameraFacts {
+    let (eye, target, up) = camera.pose();
+    let forward = (DVec3::from(target) - DVec3::from(eye)).normalize();
+    let right = forward.cross(DVec3::from(up)).normalize();
+    let half_height = match camera {
+        Camera::Perspective(c) => (0.5 * c.vertical_fov_deg.to_radians()).tan(),
+        Camera::Orthographic(c) => 0.5 * c.height_m,
+    };
+    let aspect = f64::from(width) / f64::from(height);
+    CameraFacts {
+        eye: DVec3::from(eye) - origin_m,
+        forward,
+        right: right * (half_height * aspect),
+        up: right.cross(forward) * half_height,
+        orthographic: matches!(camera, Camera::Orthographic(_)),
+        width,
+        height,
+    }
+}

@@ -1,0 +1,66 @@
+//! The water of a scene.
+
+use crate::scene::Water;
+use crate::waves::WaterSurface;
+
+/// The water: its surface at the moment of the frame, and its optics.
+#[derive(Clone, Debug)]
+pub struct WaterFacts {
+    /// The waves around the local origin.
+    pub surface: WaterSurface,
+    /// Index of refraction.
+    pub ior: f64,
+    /// Absorption a, 1/m.
+    pub absorption_per_m: [f64; 3],
+    /// Extinction c = a + b, 1/m.
+    pub extinction_per_m: [f64; 3],
+}
+
+impl WaterFacts {
+    pub(super) fn of(water: &Water, surface: WaterSurface) -> Self {
+        Self {
+            surface,
+            ior: water.ior,
+            absorption_per_m: water.absorption_per_m,
+            extinction_per_m: std::array::from_fn(|c| {
+                water.absorption_per_m[c] + water.scattering_per_m[c]
+            }),
+        }
+    }
+
+    /// Whether any light is lost on its way through the water.
+    pub fn attenuates(&self) -> bool {
+        self.extinction_per_m.iter().any(|&c| c > 0.0)
+    }
+
+    /// The water as the light of a sun or lamp meets it whose colours are not told apart by wavelength.
+    pub(super) fn band(&self) -> Band {
+        Band {
+            ior: self.ior,
+            absorption_per_m: self.absorption_per_m,
+            extinction_per_m: self.extinction_per_m,
+            rgb_weight: [1.0; 3],
+        }
+    }
+}
+
+/// A band of wavelengths: the water as its light meets it, and what it gives to each colour channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// Index of refraction.
+    pub ior: f64,
+    /// Absorption a per channel, 1/m.
+    pub absorption_per_m: [f64; 3],
+    /// Extinction c = a + b per channel, 1/m.
+    pub extinction_per_m: [f64; 3],
+    /// Share of the light's power in each colour channel that lies in this band, 0 … 1.
+    pub rgb_weight: [f64; 3],
+}
+
+impl Band {
+    /// 1 when all colour channels fade alike on their way, else 3.
+    pub fn channels(&self) -> u32 {
+        let c = self.extinction_per_m;
+        if c[0] == c[1] && c[1] == c[2] { 1 } else { 3 }
+    }
+}
