@@ -9,7 +9,7 @@ override WIDE_SUMS: bool = false;
 @group(0) @binding(4) var<storage, read_write> flux: array<atomic<u32>>;
 @group(0) @binding(5) var<storage, read_write> energy: array<atomic<u32>>;
 
-// Terms of the energy account; one (low, high) pair per term and channel, see Slot::Energy.
+// Terms of the energy account; one (low, high) pair per term and channel, see sums.rs.
 const TERM_EMITTED: u32 = 0u;
 const TERM_REFLECTED: u32 = 1u;
 const TERM_MISSED: u32 = 2u;

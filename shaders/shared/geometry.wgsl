@@ -119,6 +119,12 @@ fn step_instances(node: u32, origin: vec3f, inverse: vec3f, t_max: f32) -> Insta
     return InstanceStep(low.w & ~LEAF, high.w);
 }
 
+// A normal of the mesh in local space, of any length: it goes with the transposed inverse of local_from_mesh, which is the transpose of
+// mesh_from_local.
+fn turned_normal(instance: u32, n_mesh: vec3f) -> vec3f {
+    return n_mesh.x * instances[instance].mesh_x.xyz + n_mesh.y * instances[instance].mesh_y.xyz + n_mesh.z * instances[instance].mesh_z.xyz;
+}
+
 // Nearest object between t_min and t_max.
 fn trace_objects(count: u32, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> Seen {
     var seen = Seen(t_max, -1, vec3f(0.0), vec3f(0.0));
@@ -135,13 +141,12 @@ fn trace_objects(count: u32, origin: vec3f, direction: vec3f, t_min: f32, t_max:
         let w = 1.0 - hit.u - hit.v;
         let n_mesh = w * unpack_normal(geometry[hit.triangle].w) + hit.u * unpack_normal(geometry[hit.triangle + 1u].w)
             + hit.v * unpack_normal(geometry[hit.triangle + 2u].w);
-        // Normals go with the transposed inverse of local_from_mesh, which is the transpose of mesh_from_local.
-        let n = n_mesh.x * instances[i].mesh_x.xyz + n_mesh.y * instances[i].mesh_y.xyz + n_mesh.z * instances[i].mesh_z.xyz;
+        let n = turned_normal(i, n_mesh);
         let facing = normalize(n);
         // Which side is seen is the triangle's to say: a shading normal turns away at silhouettes.
         let corner = bitcast<vec3f>(geometry[hit.triangle].xyz);
         let flat_mesh = cross(bitcast<vec3f>(geometry[hit.triangle + 1u].xyz) - corner, bitcast<vec3f>(geometry[hit.triangle + 2u].xyz) - corner);
-        let flat = flat_mesh.x * instances[i].mesh_x.xyz + flat_mesh.y * instances[i].mesh_y.xyz + flat_mesh.z * instances[i].mesh_z.xyz;
+        let flat = turned_normal(i, flat_mesh);
         let outward = select(flat, -flat, dot(flat, n) < 0.0);
         seen.t = hit.t;
         seen.receiver = i32(i) + 1;

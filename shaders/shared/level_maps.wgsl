@@ -14,7 +14,7 @@ fn level_offset(size: u32, level: u32) -> u32 {
     return offset;
 }
 
-// Last bit of a back depth of level 0: the mesh ends or steps in depth here, see shaders/passes/level_map_pyramid.wgsl.
+// Last bit of a back depth of level 0: the mesh ends or steps in depth here, see shaders/stages/level_map_pyramid.wgsl.
 const EDGE_MARK: u32 = 1u;
 // What the march returns where only the mesh itself can tell.
 const AT_EDGE: f32 = -2.0;

@@ -11,7 +11,6 @@ use super::scene_flags::SceneArgs;
 use super::summary::{bytes, columns, predicted};
 use super::{files, scene_file};
 use crate::config::{Limits, RenderConfig};
-use crate::facts::SceneFacts;
 use crate::plan::Plan;
 use crate::plan::{NothingCached, Wanted, plan_scene};
 use crate::render::{RenderError, Renderer};
@@ -41,11 +40,14 @@ pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<()
         Renderer::new(config)?.plan(&scene.resolved, &CancellationToken::new())?
     } else {
         // For an empty GPU: no device is opened, so a plan can be had anywhere.
-        let facts = SceneFacts::with_warnings(&scene.resolved).map_err(RenderError::from)?;
+        let facts =
+            crate::methods::facts_with_warnings(&scene.resolved).map_err(RenderError::from)?;
         let empty = NothingCached {
             arena_bytes: config.level_map_budget_bytes(),
         };
-        plan_scene(&facts, Wanted::Frame, &empty).map_err(RenderError::from)?
+        plan_scene(&facts, Wanted::Frame, &empty)
+            .map_err(RenderError::from)?
+            .report
     };
     let budget_bytes = config.memory_budget_bytes();
     if plan.peak_bytes > budget_bytes {

@@ -16,10 +16,13 @@ impl SceneFacts {
             / f64::from(self.quality.level_map_texels)
     }
 
-    /// Reference planes of an object, 2 … `quality.planes`: as many fewer as its maps are smaller, so that a plane stays as far from
-    /// the next as texels do (Tipprasert 2006, §6.1).
+    /// Reference planes of an object, 2 … all of the method: as many fewer as its maps are smaller, so that a plane stays as far from
+    /// the next as texels do (Tipprasert 2006, §6.1). 0 where the method has none.
     pub fn planes_of(&self, object: usize) -> u32 {
-        let slices = f64::from(self.quality.planes.saturating_sub(1));
+        if self.method.reference_planes == 0 {
+            return 0;
+        }
+        let slices = f64::from(self.method.reference_planes - 1);
         1 + (slices * self.detail_of(object)).round().max(1.0) as u32
     }
 

@@ -12,6 +12,7 @@
 mod detail;
 mod lamp_window;
 pub mod lights;
+pub mod method;
 pub mod output;
 pub mod placement;
 pub mod receivers;
@@ -25,6 +26,7 @@ pub mod window;
 use glam::{DVec2, DVec3};
 
 pub use self::lights::{BeamSet, LightsFacts, LitLight, MOST_LIGHTS, SkyFacts};
+pub use self::method::{MethodFacts, Product};
 pub use self::output::{CameraFacts, OutputFacts};
 pub use self::receivers::{FloorFacts, FloorMap, ReceiverFacts};
 pub use self::water::{Band, WaterFacts};
@@ -45,6 +47,8 @@ pub struct SceneFacts {
     pub receivers: ReceiverFacts,
     /// What is asked for.
     pub output: OutputFacts,
+    /// What the stages need to know of the method.
+    pub method: MethodFacts,
     /// The dials, without what the output has no use for.
     pub quality: Quality,
     /// What is not simulated.
@@ -52,11 +56,11 @@ pub struct SceneFacts {
 }
 
 impl SceneFacts {
-    /// The facts of a validated scene; of its warnings only those about lights that are left out.
+    /// The facts of a validated scene that `method` carries the light of; of its warnings only those about lights that are left out.
     ///
     /// # Errors
     /// Too many lights in the air, and lights whose refracted light is too flat to follow.
-    pub fn of(resolved: &ResolvedScene) -> Result<Self, SceneError> {
+    pub fn of(resolved: &ResolvedScene, method: MethodFacts) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let origin_m = origin(resolved);
         let surface = WaterSurface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z));
@@ -72,6 +76,7 @@ impl SceneFacts {
             receivers: ReceiverFacts::of(resolved, origin_m, surface.max_height_m()),
             water: WaterFacts::of(&scene.water, surface),
             output,
+            method,
             quality,
             warnings: Vec::new(),
         };
@@ -86,8 +91,11 @@ impl SceneFacts {
     ///
     /// # Errors
     /// As [`of`](Self::of).
-    pub fn with_warnings(resolved: &ResolvedScene) -> Result<Self, SceneError> {
-        let mut facts = Self::of(resolved)?;
+    pub fn with_warnings(
+        resolved: &ResolvedScene,
+        method: MethodFacts,
+    ) -> Result<Self, SceneError> {
+        let mut facts = Self::of(resolved, method)?;
         let found = warnings::warnings(&facts, resolved);
         facts.warnings.extend(found);
         Ok(facts)

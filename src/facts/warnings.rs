@@ -52,7 +52,7 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     all.extend(mended_meshes(facts, meshes));
     all.extend(dry_parts(facts, &stopped));
     all.extend(thin_objects(facts, meshes));
-    all.extend(planes(facts, &stopped));
+    all.extend(left_out_by_method(facts, &stopped));
     all.extend(coarse_cells(facts));
     for light in &facts.lights.beam_sets {
         all.extend(from_below(light));
@@ -196,25 +196,32 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
     facts.wet_objects().filter_map(of_object).collect()
 }
 
-/// What placement by planes leaves out.
-fn planes(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
+/// What the method leaves out.
+fn left_out_by_method(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
     let mut all = Vec::new();
     let wet = facts.wet_objects().count();
-    if !facts.quality.has_planes() || facts.lights.beam_sets.is_empty() {
+    if facts.lights.lit.is_empty() {
         return all;
     }
-    if wet > 1 {
+    let method = &facts.method;
+    if wet > 1 && method.leaves_out.shadows_on_objects {
         let found = warning(
             "planes_ignore_other_objects",
-            "planes know nothing of other objects: what one object stops lights the others all the same",
-            "/quality/placement",
+            format!(
+                "method {} knows nothing of other objects: light that one object blocks still reaches the others",
+                method.name
+            ),
+            "/quality/method",
         );
         all.push(with_flux(found, stopped.stopped_again_w()));
     }
-    if wet > 0 && facts.quality.layers > 1 {
+    if wet > 0 && facts.quality.layers > 1 && method.leaves_out.further_layers {
         all.push(warning(
             "planes_light_the_first_layer",
-            "planes light what the light direction sees first; further layers stay dark",
+            format!(
+                "method {} lights what the light direction sees first; further layers stay dark",
+                method.name
+            ),
             "/quality/layers",
         ));
     }

@@ -8,8 +8,13 @@ use super::uniforms::Placed;
 /// Something to bind.
 #[derive(Clone, Copy, Debug)]
 pub enum Binding<'a> {
-    /// A whole buffer.
-    Buffer(&'a wgpu::Buffer),
+    /// The first bytes of a buffer.
+    Buffer {
+        /// The buffer.
+        buffer: &'a wgpu::Buffer,
+        /// How many of its bytes.
+        bytes: u64,
+    },
     /// Constants, for a `var<uniform>`.
     Uniform(&'a Placed),
     /// A texture.
@@ -30,7 +35,7 @@ pub struct Bound {
 /// [clears](Self::clear) them.
 #[derive(Debug, Default)]
 pub struct BindGroups {
-    kept: BTreeMap<(wgpu::BindGroupLayout, Vec<wgpu::Buffer>), KeptGroup>,
+    kept: BTreeMap<(wgpu::BindGroupLayout, Vec<(wgpu::Buffer, u64)>), KeptGroup>,
     frame: u64,
     made: u64,
 }
@@ -60,11 +65,11 @@ impl BindGroups {
         self.made
     }
 
-    /// The group of this layout that binds these buffers, whose sizes and offsets in it are the layout's; made by `make` if there is none.
+    /// The group of this layout that binds the first bytes of these buffers; made by `make` if there is none.
     pub(super) fn get(
         &mut self,
         layout: &wgpu::BindGroupLayout,
-        buffers: Vec<wgpu::Buffer>,
+        buffers: Vec<(wgpu::Buffer, u64)>,
         make: impl FnOnce() -> wgpu::BindGroup,
     ) -> wgpu::BindGroup {
         let made = &mut self.made;

@@ -1,7 +1,7 @@
 //! Pipelines whose bindings are matched by name: the WGSL variable's name is the only place where a binding is named.
 
 use super::bind_groups::{BindGroups, Binding, Bound};
-use super::shader::{Access, Module, Reflected, ShaderSources};
+use super::shader::{Access, Module, Reflected};
 use super::{GpuContext, GpuError};
 
 /// A compute entry point, ready to run.
@@ -13,31 +13,44 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Builds entry point `entry` of shader file `path` with values for `override` constants (those it does not have are skipped).
-    pub fn new(
-        gpu: &GpuContext,
-        sources: &ShaderSources,
-        path: &str,
-        entry: &str,
-        constants: &[(&'static str, f64)],
-    ) -> Result<Self, GpuError> {
-        Self::from_text(gpu, path, sources.assemble(path)?, entry, constants)
-    }
-
-    /// The same for an entry point that runs in pieces and is told which: see [`super::pieces`].
+    /// Builds entry point `entry` of `module`, which is assembled of shader file `path`, with values for `override` constants; all of them
+    /// have to be there.
     ///
     /// # Errors
-    /// As [`Self::new`], and when the entry point cannot be cut.
-    pub fn in_pieces(
+    /// When there is no such entry point, or the device refuses it.
+    pub fn new(
         gpu: &GpuContext,
-        sources: &ShaderSources,
         path: &str,
+        module: &Module,
         entry: &str,
-        constants: &[(&'static str, f64)],
+        constants: &[(&str, f64)],
     ) -> Result<Self, GpuError> {
-        let module = Module::parse(path, sources.assemble(path)?)?;
-        let text = super::pieces::told_its_piece(&module, path, entry)?;
-        Self::from_text(gpu, path, text, entry, constants)
+        let layout = BoundLayout::new(
+            gpu,
+            path,
+            module.bindings(path, entry)?,
+            wgpu::ShaderStages::COMPUTE,
+        );
+        let shader = shader_module(gpu, path, module);
+        let pipeline = gpu
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&layout.pipeline_layout(gpu, entry)),
+                module: &shader,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants,
+                    ..wgpu::PipelineCompilationOptions::default()
+                },
+                cache: None,
+            });
+        gpu.check()?;
+        Ok(Self {
+            name: entry.to_owned(),
+            layout,
+            pipeline,
+        })
     }
 
     /// The same from assembled WGSL; `path` is for messages.
@@ -49,40 +62,9 @@ impl Kernel {
         path: &str,
         text: String,
         entry: &str,
-        constants: &[(&'static str, f64)],
+        constants: &[(&str, f64)],
     ) -> Result<Self, GpuError> {
-        let module = Module::parse(path, text)?;
-        let layout = BoundLayout::new(
-            gpu,
-            path,
-            module.bindings(path, entry)?,
-            wgpu::ShaderStages::COMPUTE,
-        );
-        let shader = shader_module(gpu, path, &module);
-        let constants: Vec<(&str, f64)> = constants
-            .iter()
-            .copied()
-            .filter(|(name, _)| module.has_override(name))
-            .collect();
-        let pipeline = gpu
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&layout.pipeline_layout(gpu, entry)),
-                module: &shader,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &constants,
-                    ..wgpu::PipelineCompilationOptions::default()
-                },
-                cache: None,
-            });
-        gpu.check()?;
-        Ok(Self {
-            name: entry.to_owned(),
-            layout,
-            pipeline,
-        })
+        Self::new(gpu, path, &Module::parse(path, text)?, entry, constants)
     }
 
     /// What the kernel binds.
@@ -109,18 +91,18 @@ impl Kernel {
     }
 }
 
-/// What a raster kernel draws into.
-#[derive(Clone, Copy, Debug)]
-pub struct RasterTargets<'a> {
-    /// Colour formats in the order of the fragment's outputs.
-    pub colors: &'a [wgpu::TextureFormat],
-    /// Depth format.
-    pub depth: wgpu::TextureFormat,
-    /// Which fragment stays.
-    pub depth_compare: wgpu::CompareFunction,
+/// What a raster kernel draws into, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RasterTargets {
+    /// Format and blending of each output of the fragment.
+    pub colors: Vec<wgpu::ColorTargetState>,
+    /// Depth and stencil test.
+    pub depth: Option<wgpu::DepthStencilState>,
+    /// What is drawn, and which faces are left out.
+    pub primitive: wgpu::PrimitiveState,
 }
 
-/// A vertex and a fragment entry point that draw triangles without vertex buffers.
+/// A vertex and a fragment entry point that draw without vertex buffers.
 #[derive(Debug)]
 pub struct RasterKernel {
     name: String,
@@ -129,15 +111,17 @@ pub struct RasterKernel {
 }
 
 impl RasterKernel {
-    /// Builds the pipeline of `vertex` and `fragment` of shader file `path`; both sides of triangles are drawn.
+    /// Builds the pipeline of a vertex and a fragment entry point of `module`, which is assembled of shader file `path`.
+    ///
+    /// # Errors
+    /// When there are no such entry points, or the device refuses them.
     pub fn new(
         gpu: &GpuContext,
-        sources: &ShaderSources,
         path: &str,
-        (vertex, fragment): (&str, &str),
-        targets: &RasterTargets<'_>,
+        module: &Module,
+        [vertex, fragment]: [&str; 2],
+        targets: &RasterTargets,
     ) -> Result<Self, GpuError> {
-        let module = Module::parse(path, sources.assemble(path)?)?;
         let mut bindings = module.bindings(path, vertex)?;
         for found in module.bindings(path, fragment)? {
             if !bindings.contains(&found) {
@@ -147,12 +131,9 @@ impl RasterKernel {
         bindings.sort_by_key(|b| b.binding);
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let layout = BoundLayout::new(gpu, path, bindings, stages);
-        let shader = shader_module(gpu, path, &module);
-        let colors: Vec<Option<wgpu::ColorTargetState>> = targets
-            .colors
-            .iter()
-            .map(|&format| Some(format.into()))
-            .collect();
+        let shader = shader_module(gpu, path, module);
+        let colors: Vec<Option<wgpu::ColorTargetState>> =
+            targets.colors.iter().cloned().map(Some).collect();
         let pipeline = gpu
             .device
             .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -164,14 +145,8 @@ impl RasterKernel {
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     buffers: &[],
                 },
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: targets.depth,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(targets.depth_compare),
-                    stencil: wgpu::StencilState::default(),
-                    bias: wgpu::DepthBiasState::default(),
-                }),
+                primitive: targets.primitive,
+                depth_stencil: targets.depth.clone(),
                 multisample: wgpu::MultisampleState::default(),
                 fragment: Some(wgpu::FragmentState {
                     module: &shader,
@@ -274,12 +249,16 @@ impl BoundLayout {
             let found = find(&b.name)
                 .ok_or_else(|| fault(format!("nothing is there to bind to `{}`", b.name)))?;
             let resource = match (found, b.access) {
-                (Binding::Buffer(buffer), Access::StorageRead | Access::StorageWrite) => {
-                    buffers.push(buffer.clone());
-                    buffer.as_entire_binding()
+                (Binding::Buffer { buffer, bytes }, Access::StorageRead | Access::StorageWrite) => {
+                    buffers.push((buffer.clone(), bytes));
+                    wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                        buffer,
+                        offset: 0,
+                        size: wgpu::BufferSize::new(bytes),
+                    })
                 }
                 (Binding::Uniform(placed), Access::Uniform(bytes)) => {
-                    buffers.push(placed.buffer.clone());
+                    buffers.push((placed.buffer.clone(), u64::from(bytes)));
                     offsets.push(placed.offset);
                     wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                         buffer: &placed.buffer,
@@ -288,9 +267,10 @@ impl BoundLayout {
                         size: wgpu::BufferSize::new(u64::from(bytes)),
                     })
                 }
-                (Binding::Texture(view), Access::Texture(_)) => {
-                    wgpu::BindingResource::TextureView(view)
-                }
+                (
+                    Binding::Texture(view),
+                    Access::Texture { .. } | Access::StorageTexture { .. },
+                ) => wgpu::BindingResource::TextureView(view),
                 _ => return Err(fault(format!("`{}` is bound to what it is not", b.name))),
             };
             entries.push(wgpu::BindGroupEntry {
@@ -326,14 +306,19 @@ fn binding_type(gpu: &GpuContext, access: Access) -> wgpu::BindingType {
         Access::Uniform(_) => buffer(gpu.uniforms_as(), true),
         Access::StorageRead => buffer(storage(true), false),
         Access::StorageWrite => buffer(storage(false), false),
-        Access::Texture(unsigned) => wgpu::BindingType::Texture {
-            sample_type: if unsigned {
-                wgpu::TextureSampleType::Uint
-            } else {
-                wgpu::TextureSampleType::Float { filterable: false }
-            },
-            view_dimension: wgpu::TextureViewDimension::D2,
+        Access::Texture { sample, dimension } => wgpu::BindingType::Texture {
+            sample_type: sample,
+            view_dimension: dimension,
             multisampled: false,
+        },
+        Access::StorageTexture {
+            access,
+            format,
+            dimension,
+        } => wgpu::BindingType::StorageTexture {
+            access,
+            format,
+            view_dimension: dimension,
         },
     }
 }

@@ -109,8 +109,22 @@ pub enum Access {
     StorageRead,
     /// Storage buffer that is written.
     StorageWrite,
-    /// Sampled texture that is only loaded from, with unsigned integers (true) or floats.
-    Texture(bool),
+    /// Texture that is read; floats are loaded, not filtered.
+    Texture {
+        /// What its texels are.
+        sample: wgpu::TextureSampleType,
+        /// 2D, an array, 3D …
+        dimension: wgpu::TextureViewDimension,
+    },
+    /// Texture that is stored to.
+    StorageTexture {
+        /// Whether it is read too.
+        access: wgpu::StorageTextureAccess,
+        /// Format of a texel.
+        format: wgpu::TextureFormat,
+        /// 2D, an array, 3D …
+        dimension: wgpu::TextureViewDimension,
+    },
 }
 
 /// A resource of an entry point.
@@ -150,13 +164,7 @@ impl Module {
 
     /// What `entry` binds, by binding number.
     pub fn bindings(&self, name: &str, entry: &str) -> Result<Vec<Reflected>, GpuError> {
-        let index = self
-            .ir
-            .entry_points
-            .iter()
-            .position(|e| e.name == entry)
-            .ok_or_else(|| shader_error(name, &format!("has no entry point `{entry}`")))?;
-        let used = self.info.get_entry_point(index);
+        let used = self.info.get_entry_point(self.index_of(name, entry)?);
         let mut found = Vec::new();
         for (handle, variable) in self.ir.global_variables.iter() {
             let Some(binding) = variable.binding else {
@@ -195,12 +203,36 @@ impl Module {
         Ok(found)
     }
 
-    /// Whether the module declares an `override` of this name.
-    pub fn has_override(&self, name: &str) -> bool {
-        self.ir
-            .overrides
-            .iter()
-            .any(|(_, o)| o.name.as_deref() == Some(name))
+    /// Names of the `override` constants on which entry point `entry` depends, in the order of the text.
+    ///
+    /// # Errors
+    /// When there is no such entry point.
+    pub fn overrides_of(&self, name: &str, entry: &str) -> Result<Vec<String>, GpuError> {
+        let ir = &self.ir;
+        let entry = &ir.entry_points[self.index_of(name, entry)?];
+        // What other constants are made of counts everywhere.
+        let mut used = overrides_in(&ir.global_expressions);
+        let mut seen = BTreeSet::new();
+        let mut pending = vec![&entry.function];
+        while let Some(function) = pending.pop() {
+            used.extend(overrides_in(&function.expressions));
+            let mut called = Vec::new();
+            calls(&function.body, &mut called);
+            let new = called.into_iter().filter(|&callee| seen.insert(callee));
+            pending.extend(new.map(|callee| &ir.functions[callee]));
+        }
+        let declared = ir.overrides.iter();
+        let used = declared.filter(|(handle, _)| used.contains(handle));
+        Ok(used
+            .filter_map(|(_, constant)| constant.name.clone())
+            .collect())
+    }
+
+    fn index_of(&self, name: &str, entry: &str) -> Result<usize, GpuError> {
+        let mut entries = self.ir.entry_points.iter();
+        entries
+            .position(|e| e.name == entry)
+            .ok_or_else(|| shader_error(name, &format!("has no entry point `{entry}`")))
     }
 
     fn access(&self, variable: &naga::GlobalVariable) -> Option<Access> {
@@ -215,12 +247,109 @@ impl Module {
             naga::AddressSpace::Storage { .. } => Some(Access::StorageRead),
             naga::AddressSpace::Handle => match inner {
                 naga::TypeInner::Image {
-                    class: naga::ImageClass::Sampled { kind, .. },
-                    ..
-                } => Some(Access::Texture(*kind == naga::ScalarKind::Uint)),
+                    dim,
+                    arrayed,
+                    class,
+                } => texture_access(*class, view_dimension(*dim, *arrayed)?),
                 _ => None,
             },
             _ => None,
         }
+    }
+}
+
+fn overrides_in(
+    expressions: &naga::Arena<naga::Expression>,
+) -> BTreeSet<naga::Handle<naga::Override>> {
+    let overrides = expressions.iter().map(|(_, expression)| expression);
+    overrides
+        .filter_map(|expression| match expression {
+            naga::Expression::Override(handle) => Some(*handle),
+            _ => None,
+        })
+        .collect()
+}
+
+/// The functions that a block calls itself.
+fn calls(block: &naga::Block, into: &mut Vec<naga::Handle<naga::Function>>) {
+    for statement in block {
+        match statement {
+            naga::Statement::Call { function, .. } => into.push(*function),
+            naga::Statement::Block(inner) => calls(inner, into),
+            naga::Statement::If { accept, reject, .. } => {
+                calls(accept, into);
+                calls(reject, into);
+            }
+            naga::Statement::Switch { cases, .. } => {
+                for case in cases {
+                    calls(&case.body, into);
+                }
+            }
+            naga::Statement::Loop {
+                body, continuing, ..
+            } => {
+                calls(body, into);
+                calls(continuing, into);
+            }
+            _ => {}
+        }
+    }
+}
+
+fn view_dimension(dim: naga::ImageDimension, arrayed: bool) -> Option<wgpu::TextureViewDimension> {
+    use wgpu::TextureViewDimension as View;
+    Some(match (dim, arrayed) {
+        (naga::ImageDimension::D1, false) => View::D1,
+        (naga::ImageDimension::D2, false) => View::D2,
+        (naga::ImageDimension::D2, true) => View::D2Array,
+        (naga::ImageDimension::D3, false) => View::D3,
+        (naga::ImageDimension::Cube, false) => View::Cube,
+        (naga::ImageDimension::Cube, true) => View::CubeArray,
+        _ => return None,
+    })
+}
+
+fn texture_access(
+    class: naga::ImageClass,
+    dimension: wgpu::TextureViewDimension,
+) -> Option<Access> {
+    use wgpu::{
+        StorageTextureAccess as Storage, TextureFormat as Format, TextureSampleType as Type,
+    };
+    match class {
+        naga::ImageClass::Sampled { kind, multi: false } => Some(Access::Texture {
+            sample: match kind {
+                naga::ScalarKind::Uint => Type::Uint,
+                naga::ScalarKind::Sint => Type::Sint,
+                _ => Type::Float { filterable: false },
+            },
+            dimension,
+        }),
+        naga::ImageClass::Depth { multi: false } => Some(Access::Texture {
+            sample: Type::Depth,
+            dimension,
+        }),
+        naga::ImageClass::Storage { format, access } => Some(Access::StorageTexture {
+            access: match (
+                access.contains(naga::StorageAccess::LOAD),
+                access.contains(naga::StorageAccess::STORE),
+            ) {
+                (true, true) => Storage::ReadWrite,
+                (true, false) => Storage::ReadOnly,
+                _ => Storage::WriteOnly,
+            },
+            // Those that every WebGPU device can store to and that passes use.
+            format: match format {
+                naga::StorageFormat::R32Float => Format::R32Float,
+                naga::StorageFormat::R32Uint => Format::R32Uint,
+                naga::StorageFormat::Rg32Float => Format::Rg32Float,
+                naga::StorageFormat::Rgba16Float => Format::Rgba16Float,
+                naga::StorageFormat::Rgba32Float => Format::Rgba32Float,
+                naga::StorageFormat::Rgba8Unorm => Format::Rgba8Unorm,
+                _ => return None,
+            },
+            dimension,
+        }),
+        _ => None,
     }
 }

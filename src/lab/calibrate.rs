@@ -10,10 +10,11 @@ use crate::config::Limits;
 use crate::facts::SceneFacts;
 use crate::frame::Frame;
 use crate::mesh::MeshError;
+use crate::methods;
 use crate::reference::{ReferenceError, ReferenceSettings, irradiance_map};
 use crate::scene::{LayerName, ResolvedScene, Scene, SceneError, resolve};
 use crate::tuning::Calibration;
-use crate::tuning::cost::{PassRate, fit_rate, work};
+use crate::tuning::cost::{PassRate, fit_rate};
 
 /// Timed runs of each scene, after one that warms up.
 const RUNS: usize = 5;
@@ -69,7 +70,7 @@ pub fn calibration<E: std::error::Error>(
     for (index, value) in timed.iter().enumerate() {
         progress("timing passes", 0.5 * index as f64 / timed.len() as f64);
         let scene = resolved(value.clone())?;
-        let facts = SceneFacts::of(&scene)?;
+        let facts = methods::facts(&scene)?;
         let mut runs: BTreeMap<String, Vec<f64>> = BTreeMap::new();
         // Warm frames find their level maps: those passes are timed when they run.
         let first = render(&scene).map_err(MeasureError::Render)?.stats;
@@ -211,4 +212,11 @@ fn resolved<E: std::error::Error>(mut value: Value) -> Result<ResolvedScene, Mea
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Units of work of one run of a pass; 0 for a pass that is not known.
+fn work(pass: &str, facts: &SceneFacts) -> f64 {
+    let passes = methods::all_passes();
+    let found = passes.into_iter().find(|known| known.name == pass);
+    found.map_or(0.0, |pass| (pass.work)(facts))
 }

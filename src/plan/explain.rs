@@ -56,12 +56,16 @@ impl fmt::Display for Plan {
         }
         writeln!(f, "memory, {} at its peak", human_bytes(self.peak_bytes))?;
         for slot in &self.slots {
+            let shares = slot.shares.as_ref();
+            let shares =
+                shares.map_or(String::new(), |owner| format!(", in the memory of {owner}"));
             writeln!(
                 f,
-                "  {}: {} ({})",
+                "  {}: {} ({}){}",
                 slot.name,
                 human_bytes(slot.bytes),
-                slot.holds
+                slot.holds,
+                shares
             )?;
         }
         for warning in &self.warnings {

@@ -1,7 +1,7 @@
-//! The planner: scene facts and what is cached become the shortest list of passes, with a reason for each that is in or out.
+//! From facts and what is wanted to a plan: which passes run, why, and how much memory they take.
 //!
-//! A pure function without GPU. The list is walked backwards from what the output awaits; a pass stays if something awaited
-//! is written by it and it is wanted. What is cached counts as there, so a cache hit needs no code of its own.
+//! The walk itself is the graph's ([`crate::graph::plan`]); this room says what a frame awaits, what is there already, and what the
+//! plan reads like.
 
 pub mod explain;
 
@@ -10,11 +10,24 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
-use crate::passes::{self, PassDesc, Repeat, Slot, slot};
+use crate::facts::{Product, SceneFacts};
+use crate::graph::{self, Allocation, PlanError, Planned, PlannedSlot as HeldSlot, Scope};
+use crate::methods;
 use crate::scene::LayerName;
+use crate::stages::camera_hits::{VISIBLE_ALBEDO, VISIBLE_DEPTH};
+use crate::stages::estimate::DIFFERENCES;
+use crate::stages::irradiance::IRRADIANCE;
+use crate::stages::level_map::LEVEL_MAPS;
+use crate::stages::maps::MapLayout;
+use crate::stages::points::{POINT_IRRADIANCE, POINTS, band_rows, size};
+use crate::stages::shade::RADIANCE;
+use crate::stages::sums::ENERGY;
+use crate::stages::{Caustica, Pass, Slot};
 use crate::stats::{AbsentPass, ChosenDials, Warning};
+
+/// Bytes a frame holds besides its slots: the empty list, queue heads, arguments of indirect dispatches.
+pub const SUNDRY_BYTES: u64 = 256 + 256 + 12;
 
 /// The shortest list of passes that makes what a scene asks for, and why.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -54,19 +67,19 @@ pub struct PlannedSlot {
     pub bytes: u64,
     /// What one element holds, with its unit.
     pub holds: String,
+    /// The slot in whose memory it lies; absent where it has its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shares: Option<String>,
 }
 
-/// Why there is no plan.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PlanError {
-    /// A pass needs what no pass before it writes: a defect of the list.
-    #[error("pass `{pass}` reads `{slot}`, which nothing before it writes")]
-    NothingWrites {
-        /// The pass.
-        pass: &'static str,
-        /// The slot.
-        slot: &'static str,
-    },
+/// A plan as the executor runs it, with what it reads like.
+pub struct FramePlan {
+    /// How much of the frame it makes.
+    pub wanted: Wanted,
+    /// Passes and slots.
+    pub graph: Planned<Caustica>,
+    /// For people and programs.
+    pub report: Plan,
 }
 
 /// How much of a frame is wanted.
@@ -123,33 +136,41 @@ impl Cached for WarmCache {
     }
 }
 
-/// The slots that hold what is wanted of a scene's output.
-pub fn awaited(facts: &SceneFacts, wanted: Wanted) -> BTreeSet<Slot> {
-    let estimate = (facts.quality.estimate_error && !facts.lights.beam_sets.is_empty())
-        .then_some(Slot::Differences);
-    match wanted {
-        Wanted::LevelMaps => return BTreeSet::from([Slot::LevelMaps]),
-        Wanted::Estimate => return estimate.into_iter().collect(),
-        Wanted::Frame => {}
+/// The slots that hold what is wanted of a scene's output. The energy account is awaited in its own right, wherever light is followed.
+pub fn awaited(facts: &SceneFacts, wanted: Wanted) -> BTreeSet<&'static Slot> {
+    if wanted == Wanted::LevelMaps {
+        return BTreeSet::from([&LEVEL_MAPS]);
     }
+    let mut all = BTreeSet::new();
+    if !facts.lights.beam_sets.is_empty() {
+        all.insert(&ENERGY);
+        if facts.quality.estimate_error && facts.method.product == Product::ReceiverMaps {
+            all.insert(&DIFFERENCES);
+        }
+    }
+    if wanted == Wanted::Frame {
+        all.extend(awaited_layers(facts));
+    }
+    all
+}
+
+/// The slots that hold the layers of the output.
+pub fn awaited_layers(facts: &SceneFacts) -> BTreeSet<&'static Slot> {
     if facts.output.camera.is_none() {
-        return BTreeSet::from([Slot::Irradiance])
-            .into_iter()
-            .chain(estimate)
-            .collect();
+        return BTreeSet::from([match facts.method.product {
+            Product::PointIrradiance => &POINT_IRRADIANCE,
+            Product::ReceiverMaps | Product::Field => &IRRADIANCE,
+        }]);
     }
-    facts
-        .output
-        .layers
-        .iter()
+    let layers = facts.output.layers.iter();
+    layers
         .map(|layer| match layer {
-            LayerName::Radiance => Slot::Radiance,
-            LayerName::Depth | LayerName::Normal => Slot::VisibleNormal,
-            LayerName::Position => Slot::VisiblePosition,
-            LayerName::Albedo => Slot::VisibleAlbedo,
-            LayerName::Irradiance => Slot::VisibleIrradiance,
+            LayerName::Radiance => &RADIANCE,
+            LayerName::Depth => &VISIBLE_DEPTH,
+            LayerName::Normal | LayerName::Position => &POINTS,
+            LayerName::Albedo => &VISIBLE_ALBEDO,
+            LayerName::Irradiance => &POINT_IRRADIANCE,
         })
-        .chain(estimate)
         .collect()
 }
 
@@ -166,73 +187,158 @@ pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
         .collect()
 }
 
-/// Plans `facts` from `passes` (usually [`passes::ALL`]).
+/// Plans `facts` from `passes`, usually those of the [method's pipeline](methods::Method::pipeline).
+///
+/// # Errors
+/// When the list has a pass that reads what nothing before it writes.
 pub fn plan(
-    passes: &[&PassDesc],
+    passes: &[&'static Pass],
     facts: &SceneFacts,
     wanted: Wanted,
     cached: &dyn Cached,
-) -> Result<Plan, PlanError> {
-    let mut awaiting = awaited(facts, wanted);
-    let missing = level_maps(facts)
+) -> Result<FramePlan, PlanError> {
+    let level_maps = level_maps(facts);
+    let level_map_bytes: u64 = level_maps.iter().map(|key| key.bytes()).sum();
+    let missing = level_maps
         .iter()
         .filter(|key| !cached.has_level_map(key))
         .count();
-    let mut kept: Vec<(&PassDesc, String)> = Vec::new();
-    let mut absent = Vec::new();
-    for pass in passes.iter().rev() {
-        let verdict = verdict(pass, facts, &awaiting, missing);
-        match verdict {
-            Ok(reason) => {
-                awaiting.extend(pass.reads.iter().chain(pass.reads_if_present));
-                kept.push((pass, reason));
-            }
-            Err(reason) => absent.push(AbsentPass {
-                name: pass.name.to_owned(),
-                reason,
-            }),
+    let there = if missing == 0 {
+        BTreeSet::from([&LEVEL_MAPS])
+    } else {
+        BTreeSet::new()
+    };
+    let kept_bytes = |slot: &Slot| {
+        if *slot == LEVEL_MAPS {
+            cached.arena_bytes(level_map_bytes)
+        } else {
+            slot.bytes(facts)
         }
-    }
-    kept.reverse();
-    absent.reverse();
-    absent.extend(absent_effects(facts));
-    check_order(&kept, missing == 0)?;
-    let slots = slots(facts, wanted, &kept, cached);
-    Ok(Plan {
-        passes: kept
+    };
+    let graph = graph::plan(passes, facts, &awaited(facts, wanted), &there, kept_bytes)?;
+    let report = report(&graph, facts, wanted, missing);
+    Ok(FramePlan {
+        wanted,
+        graph,
+        report,
+    })
+}
+
+fn report(
+    graph: &Planned<Caustica>,
+    facts: &SceneFacts,
+    wanted: Wanted,
+    missing_level_maps: usize,
+) -> Plan {
+    let absent = graph.absent.iter().map(|(pass, reason)| AbsentPass {
+        name: pass.name.to_owned(),
+        reason: reason.clone(),
+    });
+    let besides = besides(facts, wanted);
+    let kept = graph.slots.iter();
+    let kept = kept.filter(|slot| slot.allocation == Allocation::Kept);
+    let peak_bytes = graph.buffers.iter().sum::<u64>()
+        + graph.texture_bytes
+        + kept.map(|slot| slot.bytes).sum::<u64>()
+        + besides.iter().map(|slot| slot.bytes).sum::<u64>();
+    Plan {
+        passes: graph
+            .passes
             .iter()
             .map(|(pass, reason)| PlannedPass {
                 name: pass.name.to_owned(),
                 reason: reason.clone(),
-                runs: runs(pass.repeat, facts, missing),
+                runs: runs(pass.steps.scope(), facts, missing_level_maps),
             })
             .collect(),
-        absent,
-        peak_bytes: slots.iter().map(|slot| slot.bytes).sum(),
-        slots,
+        absent: absent.chain(absent_effects(facts)).collect(),
+        slots: graph
+            .slots
+            .iter()
+            .map(|held| PlannedSlot {
+                name: held.slot.name.to_owned(),
+                bytes: held.bytes,
+                holds: held.slot.holds.to_owned(),
+                shares: shares(graph, held),
+            })
+            .chain(besides)
+            .collect(),
+        peak_bytes,
         chosen: None,
         warnings: facts.warnings.clone(),
-    })
+    }
 }
 
-fn verdict(
-    pass: &PassDesc,
-    facts: &SceneFacts,
-    awaiting: &BTreeSet<Slot>,
-    missing: usize,
-) -> Result<String, String> {
-    let reason = (pass.wanted)(facts)?;
-    if pass.repeat == Repeat::LevelMap && missing == 0 {
-        return Err("every level map it would build is cached".to_owned());
+/// The largest slot in the same buffer, if that is another one.
+fn shares(graph: &Planned<Caustica>, held: &HeldSlot<Caustica>) -> Option<String> {
+    let Allocation::Buffer(number) = held.allocation else {
+        return None;
+    };
+    let owner = graph.owner(number)?;
+    (owner != held.slot).then(|| owner.name.to_owned())
+}
+
+/// What is held besides the slots.
+fn besides(facts: &SceneFacts, wanted: Wanted) -> Vec<PlannedSlot> {
+    let readback = match wanted {
+        Wanted::LevelMaps => 0,
+        Wanted::Frame | Wanted::Estimate => readback_bytes(facts),
+    };
+    [
+        (
+            "readback",
+            readback,
+            "the largest result on its way to the host, and an estimate's sums",
+        ),
+        (
+            "sundry",
+            SUNDRY_BYTES,
+            "empty list, queue heads, dispatch arguments",
+        ),
+    ]
+    .map(|(name, bytes, holds)| PlannedSlot {
+        name: name.to_owned(),
+        bytes,
+        holds: holds.to_owned(),
+        shares: None,
+    })
+    .into()
+}
+
+/// Bytes of the estimate's sums, which wait for the host beside any other result.
+pub fn differences_beside(facts: &SceneFacts) -> u64 {
+    if facts.quality.estimate_error && !facts.lights.beam_sets.is_empty() {
+        DIFFERENCES.bytes(facts)
+    } else {
+        0
     }
-    if pass.writes.iter().any(|slot| awaiting.contains(slot)) {
-        return Ok(reason);
+}
+
+/// Bytes of the largest result that is copied to the host at once, and of what waits beside it.
+pub fn readback_bytes(facts: &SceneFacts) -> u64 {
+    let beside = differences_beside(facts);
+    beside
+        + match facts.output.camera {
+            Some(camera) => {
+                let rows = band_rows(camera.width, camera.height);
+                let layers = awaited_layers(facts).into_iter();
+                let texel = layers.map(bytes_per_point).max().unwrap_or(0);
+                texel * u64::from(camera.width) * u64::from(rows)
+            }
+            None if facts.lights.beam_sets.is_empty() => 0,
+            None => 12 * MapLayout::of(facts).irradiance_texels(),
+        }
+}
+
+/// Bytes per pixel of a slot that layers are read from.
+pub fn bytes_per_point(slot: &Slot) -> u64 {
+    if *slot == POINTS {
+        32
+    } else if *slot == VISIBLE_DEPTH {
+        4
+    } else {
+        16
     }
-    let writes: Vec<&str> = pass.writes.iter().map(|slot| slot.info().name).collect();
-    Err(format!(
-        "nothing in this frame reads what it writes ({})",
-        writes.join(", ")
-    ))
 }
 
 /// Work inside passes that a scene does not call for.
@@ -256,7 +362,7 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
             "all colour channels fade alike: one is carried for all",
         );
     }
-    if facts.lights.sky.radiance.iter().all(|&l| l == 0.0) {
+    if !facts.lights.sky.shines() {
         add("sky", "no sky shines");
     } else if facts.output.camera.is_none() && facts.output.sky_w_m2.iter().all(|&e| e == 0.0) {
         add("sky", "output.include_sky is false");
@@ -276,115 +382,35 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     absent
 }
 
-fn runs(repeat: Repeat, facts: &SceneFacts, missing: usize) -> u32 {
-    match repeat {
-        Repeat::LevelMap => u32::try_from(missing).unwrap_or(u32::MAX),
-        Repeat::Light | Repeat::FineLight | Repeat::CoarseLight => {
-            u32::try_from(facts.lights.beam_sets.len()).unwrap_or(u32::MAX)
-        }
-        Repeat::Frame => 1,
-        Repeat::Band => facts
-            .output
-            .camera
-            .map_or(0, |c| c.height.div_ceil(slot::band_rows(c.width, c.height))),
-    }
-}
-
-/// Every slot that is read must be an upload, cached, or written before.
-fn check_order(kept: &[(&PassDesc, String)], level_maps_cached: bool) -> Result<(), PlanError> {
-    let mut there: BTreeSet<Slot> = slot::SLOTS
-        .into_iter()
-        .filter(|s| s.info().lifetime == slot::Lifetime::Upload)
-        .collect();
-    if level_maps_cached {
-        there.insert(Slot::LevelMaps);
-    }
-    for (pass, _) in kept {
-        if let Some(missing) = pass.reads.iter().find(|slot| !there.contains(slot)) {
-            return Err(PlanError::NothingWrites {
-                pass: pass.name,
-                slot: missing.info().name,
-            });
-        }
-        there.extend(pass.writes);
-    }
-    Ok(())
-}
-
-fn slots(
-    facts: &SceneFacts,
-    wanted: Wanted,
-    kept: &[(&PassDesc, String)],
-    cached: &dyn Cached,
-) -> Vec<PlannedSlot> {
-    let used: BTreeSet<Slot> = kept
-        .iter()
-        .flat_map(|(pass, _)| {
-            pass.reads
-                .iter()
-                .chain(pass.writes)
-                .chain(pass.reads_if_present)
-        })
-        .copied()
-        .collect();
-    let level_map_bytes: u64 = level_maps(facts).iter().map(|key| key.bytes()).sum();
-    let draws = kept.iter().any(|(pass, _)| pass.repeat == Repeat::LevelMap);
-    let readback_bytes = match wanted {
-        Wanted::LevelMaps => 0,
-        Wanted::Frame | Wanted::Estimate => slot::readback_bytes(facts),
-    };
-    let mut besides = vec![
-        (
-            "readback",
-            readback_bytes,
-            "the largest result on its way to the host, and an estimate's sums",
-        ),
-        (
-            "sundry",
-            slot::SUNDRY_BYTES,
-            "empty list, queue heads, dispatch arguments",
-        ),
-    ];
-    if draws {
-        let largest = level_maps(facts)
-            .into_iter()
-            .map(slot::draw_target_bytes)
-            .max();
-        besides.push((
-            "level_map_targets",
-            largest.unwrap_or(0),
-            "textures that a level map is drawn into",
-        ));
-    }
-    let besides = besides.into_iter().map(|(name, bytes, holds)| PlannedSlot {
-        name: name.to_owned(),
-        bytes,
-        holds: holds.to_owned(),
+/// How often a pass of this scope runs.
+fn runs(scope: Scope, facts: &SceneFacts, missing_level_maps: usize) -> u32 {
+    let narrow = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
+    let sets = narrow(facts.lights.beam_sets.len());
+    let bands = size(facts).map_or(0, |[width, height]| {
+        height.div_ceil(band_rows(width, height))
     });
-    used.into_iter()
-        .map(|slot| {
-            let info = slot.info();
-            let bytes = match slot {
-                Slot::LevelMaps => cached.arena_bytes(level_map_bytes),
-                _ => slot.bytes(facts),
-            };
-            // What is empty and lent out has one element; what is empty and kept is not there at all.
-            let kept = matches!(slot, Slot::LevelMaps | Slot::Geometry);
-            PlannedSlot {
-                name: info.name.to_owned(),
-                bytes: if kept { bytes } else { bytes.max(16) },
-                holds: info.holds.to_owned(),
-            }
-        })
-        .chain(besides)
-        .collect()
+    match scope {
+        Scope::LevelMap => narrow(missing_level_maps),
+        Scope::BeamSet | Scope::FineBeamSet | Scope::CoarseBeamSet => sets,
+        Scope::Frame | Scope::Estimate => 1,
+        Scope::Band => bands,
+        Scope::BandBeamSet => bands.saturating_mul(sets),
+    }
 }
 
-/// Plans with the program's own passes.
+/// Plans with the passes of the scene's method.
+///
+/// # Errors
+/// As [`plan`].
 pub fn plan_scene(
     facts: &SceneFacts,
     wanted: Wanted,
     cached: &dyn Cached,
-) -> Result<Plan, PlanError> {
-    plan(&passes::ALL, facts, wanted, cached)
+) -> Result<FramePlan, PlanError> {
+    plan(
+        &methods::of(&facts.quality).pipeline(),
+        facts,
+        wanted,
+        cached,
+    )
 }

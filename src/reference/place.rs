@@ -38,8 +38,8 @@ impl Place {
         let scene = &resolved.scene;
         check_water(&scene.water)?;
         let (suns, lamps) = (suns(scene)?, point_lights(scene)?);
-        let facts =
-            SceneFacts::of(resolved).map_err(|error| ReferenceError::Scene(error.to_string()))?;
+        let facts = crate::methods::facts(resolved)
+            .map_err(|error| ReferenceError::Scene(error.to_string()))?;
         check_surface(&facts.water.surface)?;
         let occluders = Occluders::of(resolved, DVec2::new(facts.origin_m.x, facts.origin_m.z))?;
         let suns = suns.into_iter().cloned().map(Light::Sun);

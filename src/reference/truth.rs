@@ -5,7 +5,6 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::{ReferenceError, TruthSettings, disk, map, object_map, view};
-use crate::facts::SceneFacts;
 use crate::scene::{Output, Receiver, ResolvedScene};
 
 /// Shares of shadow between which a value lies in the soft edge itself.
@@ -174,7 +173,7 @@ fn floor(
         && output.include_sky
     {
         output.include_sky = false;
-        sky_w_m2 = SceneFacts::of(resolved)
+        sky_w_m2 = crate::methods::facts(resolved)
             .map_err(|error| ReferenceError::Scene(error.to_string()))?
             .output
             .sky_w_m2;

@@ -1,226 +1,337 @@
-//! What a frame holds on the GPU: its slots' buffers, and what the host puts into them.
+//! What a frame holds on the GPU: its slots, and what the host puts into them.
 
 use std::collections::BTreeMap;
 
-use super::{RenderError, Renderer, geometry, slot_name};
+use super::{RenderError, Renderer};
 use crate::facts::SceneFacts;
-use crate::facts::placement::LevelMapKey;
-use crate::gpu::Binding;
 use crate::gpu::uniforms::Placed;
-use crate::passes::desc::Step;
-use crate::passes::gpu_data::{Comparison, Receiver, Wave};
-use crate::passes::slot::{SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
-use crate::passes::{estimate, light};
-use crate::plan::Plan;
+use crate::gpu::{Binding, GpuError};
+use crate::graph::plan::Phase;
+use crate::graph::{Allocation, Clear, Kind};
+use crate::plan::FramePlan;
 use crate::scene::ResolvedScene;
+use crate::stages::estimate::{self, COMPARISONS, Comparison};
+use crate::stages::level_map::LEVEL_MAPS;
+use crate::stages::objects::{GEOMETRY, INSTANCES};
+use crate::stages::receivers::{self, ALL_RECEIVERS, RECEIVERS, Receiver};
+use crate::stages::surface::{WAVES, Wave};
+use crate::stages::{Pass, Slot};
 
 /// Names of the buffers beside the slots'.
-pub(super) const EMPTY_LIST: &str = "empty list";
-pub(super) const QUEUE_HEADS: &str = "queue heads";
-pub(super) const INDIRECT: &str = "indirect";
+const EMPTY_LIST: &str = "empty list";
+const QUEUE_HEADS: &str = "queue heads";
+const INDIRECT: &str = "indirect";
 
-/// The buffers of one frame, by slot name.
-pub(super) struct FrameBuffers {
-    pub(super) by_name: BTreeMap<&'static str, wgpu::Buffer>,
-    pub(super) empty: wgpu::Buffer,
-    pub(super) queue_heads: wgpu::Buffer,
+/// The slots of one frame.
+pub(super) struct FrameSlots {
+    held: BTreeMap<&'static Slot, Held>,
+    /// The buffers that slots share, each under the name of the largest of them.
+    shared: Vec<(&'static str, wgpu::Buffer)>,
+    empty: wgpu::Buffer,
+    queue_heads: wgpu::Buffer,
     pub(super) indirect: wgpu::Buffer,
-    pub(super) slices: Option<SliceTargets>,
 }
 
-/// Images of the slices of the object at work, one per plane, and the depth they are drawn with.
-pub(super) struct SliceTargets {
-    pub(super) colors: Vec<wgpu::TextureView>,
-    pub(super) depth: wgpu::TextureView,
+/// A slot on the GPU.
+enum Held {
+    /// The first bytes of a buffer.
+    Buffer { buffer: wgpu::Buffer, bytes: u64 },
+    /// A texture, seen as a whole.
+    Texture {
+        texture: wgpu::Texture,
+        whole: wgpu::TextureView,
+    },
 }
 
-impl FrameBuffers {
-    /// The buffer of a slot; lists that hold nothing in this scene are one zero element.
-    pub(super) fn get(&self, name: &str) -> &wgpu::Buffer {
-        self.by_name.get(name).unwrap_or(&self.empty)
+impl FrameSlots {
+    /// Buffer and bytes of a slot; lists that hold nothing in this scene are one zero element.
+    pub(super) fn buffer(&self, slot: &Slot) -> (&wgpu::Buffer, u64) {
+        match self.held.get(slot) {
+            Some(Held::Buffer { buffer, bytes }) => (buffer, *bytes),
+            _ => (&self.empty, self.empty.size()),
+        }
     }
 
-    /// The image of a plane's slice.
-    pub(super) fn slice(&self, plane: u32) -> Option<wgpu::TextureView> {
-        let slices = self.slices.as_ref()?;
-        slices.colors.get(plane as usize).cloned()
+    /// Buffer and bytes of a slot that the frame holds.
+    pub(super) fn held_buffer(&self, slot: &Slot) -> Option<(&wgpu::Buffer, u64)> {
+        match self.held.get(slot)? {
+            Held::Buffer { buffer, bytes } => Some((buffer, *bytes)),
+            Held::Texture { .. } => None,
+        }
+    }
+
+    /// What a variable of this name is bound to in a pass: the slot of that name which the pass declares.
+    pub(super) fn binding(&self, pass: &Pass, name: &str) -> Option<Binding<'_>> {
+        let slot = pass.slots().find(|slot| slot.name == name)?;
+        match self.held.get(slot) {
+            Some(Held::Texture { whole, .. }) => Some(Binding::Texture(whole)),
+            _ => {
+                let (buffer, bytes) = self.buffer(slot);
+                Some(Binding::Buffer { buffer, bytes })
+            }
+        }
+    }
+
+    /// One layer of a texture.
+    pub(super) fn layer(&self, slot: &Slot, layer: u32) -> Result<wgpu::TextureView, GpuError> {
+        let Some(Held::Texture { texture, .. }) = self.held.get(slot) else {
+            return Err(GpuError::Validation(format!(
+                "{slot:?} is drawn into or seen, and the frame holds no texture of it"
+            )));
+        };
+        Ok(texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2),
+            base_array_layer: layer,
+            array_layer_count: Some(1),
+            ..wgpu::TextureViewDescriptor::default()
+        }))
+    }
+
+    /// Format of a texture.
+    pub(super) fn format(&self, slot: &Slot) -> Option<wgpu::TextureFormat> {
+        match self.held.get(slot)? {
+            Held::Texture { texture, .. } => Some(texture.format()),
+            Held::Buffer { .. } => None,
+        }
+    }
+
+    /// Drops the textures that are not needed after a phase.
+    pub(super) fn end_phase(&mut self, plan: &FramePlan, phase: Phase) {
+        for planned in &plan.graph.slots {
+            if planned.allocation == Allocation::Textures && planned.life[1] <= phase {
+                self.held.remove(planned.slot);
+            }
+        }
+    }
+
+    /// Empties queues, the account and the flux sums before a beam set.
+    pub(super) fn clear_for_beam_set(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        facts: &SceneFacts,
+        wide_sums: bool,
+    ) {
+        let mut head_at = 0;
+        for (slot, held) in &self.held {
+            let Held::Buffer { buffer, .. } = held else {
+                continue;
+            };
+            match slot.clear {
+                Clear::Nothing => {}
+                Clear::Zero(bytes) => {
+                    encoder.clear_buffer(buffer, 0, Some(bytes(facts, wide_sums)));
+                }
+                Clear::Head(words) => {
+                    let bytes = 4 * words.len() as u64;
+                    encoder.copy_buffer_to_buffer(&self.queue_heads, head_at, buffer, 0, bytes);
+                    head_at += bytes;
+                }
+            }
+        }
     }
 }
 
-/// Where the uniforms of a step lie, by name.
+/// The heads of a frame's queues, one behind the other.
+fn queue_heads(held: &BTreeMap<&'static Slot, Held>) -> Vec<u32> {
+    let heads = held.keys().filter_map(|slot| match slot.clear {
+        Clear::Head(words) => Some(words),
+        Clear::Nothing | Clear::Zero(_) => None,
+    });
+    heads.flatten().copied().collect()
+}
+
+/// Where uniforms lie, by name.
 pub(super) struct PlacedUniforms(Vec<(&'static str, Placed)>);
 
 impl PlacedUniforms {
-    /// What a variable of this name is bound to: the step's uniform, or else the frame's buffer.
-    pub(super) fn or_buffer<'a>(&'a self, name: &str, buffers: &'a FrameBuffers) -> Binding<'a> {
+    /// The uniform of this name.
+    pub(super) fn find(&self, name: &str) -> Option<Binding<'_>> {
         let own = self.0.iter().find(|(own, _)| *own == name);
-        own.map_or_else(
-            || Binding::Buffer(buffers.get(name)),
-            |(_, placed)| Binding::Uniform(placed),
-        )
-    }
-}
-
-/// Textures a level map is drawn into before it goes to the arena.
-pub(super) struct DrawTargets {
-    pub(super) front: wgpu::TextureView,
-    pub(super) back: wgpu::TextureView,
-    pub(super) normal: wgpu::TextureView,
-    pub(super) scratch_normal: wgpu::TextureView,
-    pub(super) depth: wgpu::TextureView,
-    /// Depth and normal of each further layer.
-    pub(super) layers: Vec<[wgpu::TextureView; 2]>,
-}
-
-impl DrawTargets {
-    /// What a pass that takes in a drawn level map binds; `layer` is the further layer it is about, if any.
-    pub(super) fn by_name(&self, name: &str, layer: u32) -> Option<wgpu::TextureView> {
-        let further = |which: usize| {
-            let layer = self.layers.get((layer as usize).checked_sub(1)?)?;
-            Some(layer[which].clone())
-        };
-        match name {
-            "layer_depth" => further(0),
-            "layer_normal" => further(1),
-            "front_depth" => Some(self.front.clone()),
-            "back_depth" => Some(self.back.clone()),
-            "front_normal" => Some(self.normal.clone()),
-            _ => None,
-        }
+        own.map(|(_, placed)| Binding::Uniform(placed))
     }
 }
 
 impl Renderer {
-    /// Lends the plan's buffers and uploads what the host provides.
+    /// Lends the plan's buffers, makes its textures, and uploads what the host provides.
     pub(super) fn prepare(
         &mut self,
         resolved: &ResolvedScene,
         facts: &SceneFacts,
-        plan: &Plan,
-    ) -> Result<FrameBuffers, RenderError> {
+        plan: &FramePlan,
+    ) -> Result<FrameSlots, RenderError> {
         use wgpu::BufferUsages as U;
         let device = self.gpu.device.clone();
-        let mut by_name = BTreeMap::new();
-        let mut slices = None;
-        for planned in &plan.slots {
-            let Some(slot) = Slot::by_name(&planned.name) else {
-                continue;
-            };
-            match slot {
-                Slot::Geometry => {
-                    if let Some(buffer) = self.geometry_buffer(resolved) {
-                        by_name.insert(slot_name(slot), buffer);
-                    }
-                }
-                Slot::LevelMaps => {
-                    if facts.wet_objects().next().is_some() {
-                        by_name.insert(slot_name(slot), self.arena_buffer());
-                    }
-                }
-                Slot::Slices => slices = Some(self.slice_targets(facts)),
-                _ => {
-                    let usage = U::STORAGE | U::COPY_DST | U::COPY_SRC;
-                    let buffer = self
-                        .pool
-                        .lend(&device, slot_name(slot), planned.bytes, usage);
-                    by_name.insert(slot_name(slot), buffer);
-                }
-            }
+        let usage = U::STORAGE | U::COPY_DST | U::COPY_SRC;
+        let mut shared = Vec::with_capacity(plan.graph.buffers.len());
+        for (number, bytes) in plan.graph.buffers.iter().enumerate() {
+            let label = plan.graph.owner(number).map_or("slots", |slot| slot.name);
+            shared.push((label, self.pool.lend(&device, label, *bytes, usage)));
         }
-        let queue_heads = self
-            .pool
-            .lend(&device, QUEUE_HEADS, 32, U::COPY_SRC | U::COPY_DST);
-        let heads: [[u32; 4]; 2] = [[0, 1, 1, 0], [0, WIDE_GROUPS, 1, 0]];
-        self.gpu
-            .queue
-            .write_buffer(&queue_heads, 0, bytemuck::cast_slice(&heads));
+        let mut held = BTreeMap::new();
+        for planned in &plan.graph.slots {
+            let slot = planned.slot;
+            let found = match planned.allocation {
+                Allocation::Buffer(number) => Some(Held::Buffer {
+                    buffer: shared[number].1.clone(),
+                    bytes: planned.bytes,
+                }),
+                Allocation::Textures => self.texture(slot, facts),
+                Allocation::Kept => self.kept(slot, resolved, facts),
+            };
+            held.extend(found.map(|found| (slot, found)));
+        }
+        let heads = queue_heads(&held);
+        let heads_bytes = 4 * heads.len().max(1) as u64;
+        let queue_heads =
+            self.pool
+                .lend(&device, QUEUE_HEADS, heads_bytes, U::COPY_SRC | U::COPY_DST);
+        if !heads.is_empty() {
+            self.gpu
+                .queue
+                .write_buffer(&queue_heads, 0, bytemuck::cast_slice(&heads));
+        }
         let empty = self
             .pool
             .lend(&device, EMPTY_LIST, 256, U::STORAGE | U::COPY_DST);
         self.gpu.queue.write_buffer(&empty, 0, &[0; 256]);
-        let buffers = FrameBuffers {
-            by_name,
+        let indirect_usage = U::INDIRECT | U::COPY_DST | U::COPY_SRC;
+        let slots = FrameSlots {
+            held,
+            shared,
             empty,
             queue_heads,
-            slices,
-            indirect: self.pool.lend(
-                &device,
-                INDIRECT,
-                12,
-                U::INDIRECT | U::COPY_DST | U::COPY_SRC,
-            ),
+            indirect: self.pool.lend(&device, INDIRECT, 12, indirect_usage),
         };
-        self.upload(facts, &buffers);
+        self.upload(facts, &slots);
         self.gpu.check()?;
-        Ok(buffers)
+        Ok(slots)
     }
 
-    pub(super) fn upload(&self, facts: &SceneFacts, buffers: &FrameBuffers) {
-        let write = |slot: Slot, bytes: &[u8]| {
-            if let Some(buffer) = buffers.by_name.get(slot_name(slot))
-                && !bytes.is_empty()
-            {
-                self.gpu.queue.write_buffer(buffer, 0, bytes);
+    /// Takes the buffers of a frame back.
+    pub(super) fn give_back(&mut self, slots: FrameSlots) {
+        for (label, buffer) in slots.shared {
+            self.pool.give_back(label, buffer);
+        }
+        for (label, buffer) in [
+            (EMPTY_LIST, slots.empty),
+            (QUEUE_HEADS, slots.queue_heads),
+            (INDIRECT, slots.indirect),
+        ] {
+            self.pool.give_back(label, buffer);
+        }
+    }
+
+    /// A slot that a cache keeps.
+    fn kept(&mut self, slot: &Slot, resolved: &ResolvedScene, facts: &SceneFacts) -> Option<Held> {
+        let buffer = if *slot == GEOMETRY {
+            if resolved.meshes.is_empty() {
+                return None;
             }
+            let geometry = self.geometry.hold(&self.gpu, &resolved.meshes);
+            geometry.buffer.clone()
+        } else if *slot == LEVEL_MAPS && facts.wet_objects().next().is_some() {
+            self.arena_buffer()
+        } else {
+            return None;
         };
-        let waves: Vec<Wave> = facts
-            .water
-            .surface
-            .components
-            .iter()
-            .map(|c| Wave {
-                amplitude_m: c.amplitude_m as f32,
-                frequency_x_per_m: c.frequency_per_m.x as f32,
-                frequency_z_per_m: c.frequency_per_m.y as f32,
-                phase_turns: c.phase_turns as f32,
-            })
-            .collect();
-        write(Slot::Waves, bytemuck::cast_slice(&waves));
-        if let Some(geometry) = &self.geometry
-            && buffers.by_name.contains_key(slot_name(Slot::Instances))
-        {
-            write(
-                Slot::Instances,
-                bytemuck::cast_slice(&geometry.instances(facts)),
-            );
-        }
-        let all: Vec<Receiver> = (0..facts.lights.lit.len())
-            .flat_map(|light| self.receivers(facts, light))
-            .collect();
-        write(Slot::AllReceivers, bytemuck::cast_slice(&all));
-        if buffers.by_name.contains_key(slot_name(Slot::Comparisons)) {
-            let compared = estimate::compared(facts);
-            let all: Vec<Comparison> = compared.iter().map(|map| map.comparison).collect();
-            write(Slot::Comparisons, bytemuck::cast_slice(&all));
-        }
+        let bytes = buffer.size();
+        Some(Held::Buffer { buffer, bytes })
     }
 
-    pub(super) fn receivers(&self, facts: &SceneFacts, light: usize) -> Vec<Receiver> {
-        light::receivers(facts, light, |object| {
-            let key = facts.lights.lit[light].boxes[object]
-                .as_ref()
-                .map(|b| &b.key);
-            let offset = key
-                .and_then(|key| self.level_maps.offset(key))
-                .unwrap_or_default();
-            u32::try_from(offset / 4).unwrap_or(u32::MAX)
+    /// A slot's texture; `None` where it has no texels in this scene.
+    fn texture(&self, slot: &Slot, facts: &SceneFacts) -> Option<Held> {
+        let Kind::Texture(texture) = &slot.kind else {
+            return None;
+        };
+        let [width, height, depth_or_array_layers] = (texture.extent)(facts);
+        if width == 0 || height == 0 || depth_or_array_layers == 0 {
+            return None;
+        }
+        let made = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(slot.name),
+            size: wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: texture.dimension.compatible_texture_dimension(),
+            format: texture.format,
+            usage: texture.usage | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let whole = made.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(if depth_or_array_layers == 1 {
+                texture.dimension
+            } else {
+                match texture.dimension {
+                    wgpu::TextureViewDimension::D2 => wgpu::TextureViewDimension::D2Array,
+                    other => other,
+                }
+            }),
+            ..wgpu::TextureViewDescriptor::default()
+        });
+        Some(Held::Texture {
+            texture: made,
+            whole,
         })
     }
 
-    pub(super) fn geometry_buffer(&mut self, resolved: &ResolvedScene) -> Option<wgpu::Buffer> {
-        if resolved.meshes.is_empty() {
-            return None;
+    fn upload(&self, facts: &SceneFacts, slots: &FrameSlots) {
+        let write = |slot: &Slot, bytes: &dyn Fn() -> Vec<u8>| {
+            if let Some((buffer, _)) = slots.held_buffer(slot) {
+                let bytes = bytes();
+                if !bytes.is_empty() {
+                    self.gpu.queue.write_buffer(buffer, 0, &bytes);
+                }
+            }
+        };
+        write(&WAVES, &|| {
+            let components = facts.water.surface.components.iter();
+            let waves: Vec<Wave> = components
+                .map(|c| Wave {
+                    amplitude_m: c.amplitude_m as f32,
+                    frequency_x_per_m: c.frequency_per_m.x as f32,
+                    frequency_z_per_m: c.frequency_per_m.y as f32,
+                    phase_turns: c.phase_turns as f32,
+                })
+                .collect();
+            bytemuck::cast_slice(&waves).to_vec()
+        });
+        write(&INSTANCES, &|| match self.geometry.in_use() {
+            Some(geometry) => bytemuck::cast_slice(&geometry.instances(facts)).to_vec(),
+            None => Vec::new(),
+        });
+        write(&ALL_RECEIVERS, &|| {
+            let lights = 0..facts.lights.lit.len();
+            let all: Vec<Receiver> = lights
+                .flat_map(|light| self.receivers(facts, light))
+                .collect();
+            bytemuck::cast_slice(&all).to_vec()
+        });
+        write(&COMPARISONS, &|| {
+            let compared = estimate::compared(facts);
+            let all: Vec<Comparison> = compared.iter().map(|map| map.comparison).collect();
+            bytemuck::cast_slice(&all).to_vec()
+        });
+    }
+
+    /// Sets the receivers of a beam set's light, for what is submitted from now on.
+    pub(super) fn set_receivers(&self, facts: &SceneFacts, index: usize, slots: &FrameSlots) {
+        if let Some((buffer, _)) = slots.held_buffer(&RECEIVERS) {
+            let receivers = self.receivers(facts, facts.lights.beam_sets[index].light);
+            let bytes = bytemuck::cast_slice(&receivers);
+            self.gpu.queue.write_buffer(buffer, 0, bytes);
         }
-        if !self
-            .geometry
-            .as_ref()
-            .is_some_and(|g| g.holds(&resolved.meshes))
-        {
-            // They hold the last one.
-            self.bind_groups.clear();
-            self.geometry = Some(geometry::Geometry::upload(&self.gpu, &resolved.meshes));
-        }
-        self.geometry.as_ref().map(|g| g.buffer.clone())
+    }
+
+    fn receivers(&self, facts: &SceneFacts, light: usize) -> Vec<Receiver> {
+        receivers::receivers(facts, light, |object| {
+            let level_box = facts.lights.lit[light].boxes[object].as_ref();
+            let offset = level_box.and_then(|b| self.level_maps.offset(&b.key));
+            u32::try_from(offset.unwrap_or_default() / 4).unwrap_or(u32::MAX)
+        })
     }
 
     pub(super) fn arena_buffer(&mut self) -> wgpu::Buffer {
@@ -237,94 +348,11 @@ impl Renderer {
             .clone()
     }
 
-    pub(super) fn draw_targets(&self, key: &LevelMapKey) -> DrawTargets {
-        let texture = |label, format| self.target_texture(label, format, key.texels);
-        DrawTargets {
-            front: texture("front depth", wgpu::TextureFormat::R32Float),
-            back: texture("back depth", wgpu::TextureFormat::R32Float),
-            normal: texture("front normal", wgpu::TextureFormat::R32Uint),
-            scratch_normal: texture("back normal", wgpu::TextureFormat::R32Uint),
-            depth: texture("depth", wgpu::TextureFormat::Depth32Float),
-            layers: (1..key.layers)
-                .map(|_| {
-                    [
-                        texture("layer's depth", wgpu::TextureFormat::R32Float),
-                        texture("layer's normal", wgpu::TextureFormat::R32Uint),
-                    ]
-                })
-                .collect(),
-        }
-    }
-
-    /// Images for the slices of the largest object, and a depth.
-    fn slice_targets(&self, facts: &SceneFacts) -> SliceTargets {
-        let wet = facts.wet_objects();
-        let texels = wet
-            .map(|o| facts.receivers.objects[o].map_texels)
-            .max()
-            .unwrap_or(1);
-        let texture = |label, format| self.target_texture(label, format, texels);
-        SliceTargets {
-            colors: (0..facts.quality.planes)
-                .map(|_| texture("slice", wgpu::TextureFormat::Rgba8Unorm))
-                .collect(),
-            depth: texture("slice depth", wgpu::TextureFormat::Depth32Float),
-        }
-    }
-
-    fn target_texture(
-        &self,
-        label: &str,
-        format: wgpu::TextureFormat,
-        texels: u32,
-    ) -> wgpu::TextureView {
-        self.gpu
-            .device
-            .create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d {
-                    width: texels,
-                    height: texels,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                    | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            })
-            .create_view(&wgpu::TextureViewDescriptor::default())
-    }
-
-    pub(super) fn place_uniforms(&mut self, step: &Step) -> PlacedUniforms {
-        let placed = step.uniforms.iter();
-        let placed = placed.map(|(name, bytes)| (*name, self.uniforms.get(&self.gpu, bytes)));
+    pub(super) fn place_uniforms<'a>(
+        &mut self,
+        uniforms: impl Iterator<Item = &'a (&'static str, Vec<u8>)>,
+    ) -> PlacedUniforms {
+        let placed = uniforms.map(|(name, bytes)| (*name, self.uniforms.get(&self.gpu, bytes)));
         PlacedUniforms(placed.collect())
-    }
-}
-
-/// Empties queues, the account, and so many bytes of the flux sums before a light's turn.
-pub(super) fn clear_for_light(
-    encoder: &mut wgpu::CommandEncoder,
-    buffers: &FrameBuffers,
-    flux_bytes: u64,
-) {
-    for (name, buffer) in &buffers.by_name {
-        let Some(slot) = Slot::by_name(name) else {
-            continue;
-        };
-        if slot.info().is_queue {
-            let head = if slot == Slot::WideQueue { 16 } else { 0 };
-            if slot == Slot::SplitQueue {
-                encoder.clear_buffer(buffer, 0, Some(4 * SPLIT_HEAD_WORDS));
-            }
-            encoder.copy_buffer_to_buffer(&buffers.queue_heads, head, buffer, 0, 16);
-        } else if slot == Slot::Flux {
-            encoder.clear_buffer(buffer, 0, Some(flux_bytes));
-        } else if [Slot::Energy, Slot::PlaneLists].contains(&slot) {
-            encoder.clear_buffer(buffer, 0, None);
-        }
     }
 }

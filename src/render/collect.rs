@@ -11,18 +11,21 @@ use crate::facts::placement::LevelMapKey;
 use crate::facts::unfollowed;
 use crate::facts::warnings::{SCATTERING_NOT_FOLLOWED, WAVES_UNDERSAMPLED};
 use crate::frame::Layer;
-use crate::passes::camera_hits::MARCH_UNFINISHED;
-use crate::passes::maps::MapLayout;
-use crate::passes::slot::{ENERGY_TERMS, Slot};
-use crate::passes::{estimate, light, term};
+use crate::plan;
 use crate::scene::{LayerName, Receiver};
+use crate::stages::camera_hits::{MARCH_UNFINISHED, VISIBLE_ALBEDO, VISIBLE_DEPTH};
+use crate::stages::maps::MapLayout;
+use crate::stages::points::{POINT_IRRADIANCE, POINTS};
+use crate::stages::shade::RADIANCE;
+use crate::stages::sums::ENERGY_TERMS;
+use crate::stages::{Slot, estimate, light, term};
 use crate::stats::{EnergyAccount, PlaneStats, Warning};
 
 /// Bytes of one light's energy account.
 pub(super) const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
 
-/// Closure up to which planes are said to conserve energy: that of hits.
-const PLANES_CLOSE: f64 = 1e-5;
+/// Closure up to which a method is said to conserve energy.
+const CLOSED: f64 = 1e-5;
 
 /// The accounts of all lights from the raw sums of their beam sets, and what is worth a warning.
 pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Vec<Warning>) {
@@ -220,24 +223,26 @@ pub(super) fn planes(facts: &SceneFacts, counts: &[Vec<[u32; 4]>]) -> Vec<PlaneS
     all
 }
 
-/// Where light is placed by planes: by how much what landed differs from what the rays took away.
+/// Where the method does not conserve energy: by how much what landed differs from what the rays took away.
 fn not_conserved(facts: &SceneFacts, account: &EnergyAccount) -> Option<Warning> {
-    if !light::places_by_planes(facts) || account.closure <= PLANES_CLOSE {
+    let lands_as_taken = facts.method.conserves_energy || facts.wet_objects().next().is_none();
+    if lands_as_taken || account.closure <= CLOSED {
         return None;
     }
     let surplus_w: [f64; 3] =
         std::array::from_fn(|c| accounted_w(account, c) - account.emitted_w[c]);
     let mut message = format!(
-        "planes do not conserve energy: by {:.3} % of the flux of light {} more or less lies on the objects than their rays took",
+        "method {} does not conserve energy: what lies on the objects differs from what their rays took by {:.3} % of the flux of light {}",
+        facts.method.name,
         100.0 * account.closure,
         account.light
     );
-    if facts.quality.is_volumetric() && facts.attenuates() {
+    if facts.method.has_scratch_map && facts.attenuates() {
         message.push_str("; what was absorbed on the way to them is part of that");
     }
     Some(Warning {
         flux_w: Some(surplus_w),
-        ..Warning::new("planes_do_not_conserve", message)
+        ..Warning::new("method_does_not_conserve", message)
     })
 }
 
@@ -302,8 +307,8 @@ fn closure(account: &EnergyAccount) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The layers of a view, filled band by band.
-pub(super) struct ViewLayers<'a> {
+/// The layers of a view (or a map that is made at points), filled band by band.
+pub(super) struct PointLayers<'a> {
     facts: &'a SceneFacts,
     width: u32,
     height: u32,
@@ -312,7 +317,7 @@ pub(super) struct ViewLayers<'a> {
     unfinished: u64,
 }
 
-impl<'a> ViewLayers<'a> {
+impl<'a> PointLayers<'a> {
     pub(super) fn new(facts: &'a SceneFacts, width: u32, height: u32) -> Self {
         let pixels = width as usize * height as usize;
         let layers = facts
@@ -345,47 +350,48 @@ impl<'a> ViewLayers<'a> {
     }
 
     /// Copies a band of a slot into the layers that come from it.
-    pub(super) fn add_band(&mut self, source: Slot, first_row: u32, band: &[[f32; 4]]) {
+    pub(super) fn add_band(&mut self, source: &Slot, first_row: u32, band: &[f32]) {
         let first = first_row as usize * self.width as usize;
         let origin = self.facts.origin_m;
-        let fill = |layer: Option<&mut Layer>, values: &dyn Fn(&[f32; 4]) -> [f32; 4]| {
+        let words = (plan::bytes_per_point(source) / 4) as usize;
+        let fill = |layer: Option<&mut Layer>, values: &dyn Fn(&[f32]) -> [f32; 4]| {
             let Some(layer) = layer else { return };
             let n = layer.channels;
-            let target = &mut layer.data[first * n..(first + band.len()) * n];
-            for (pixel, value) in target.chunks_exact_mut(n).zip(band) {
+            let target = &mut layer.data[first * n..][..band.len() / words * n];
+            for (pixel, value) in target.chunks_exact_mut(n).zip(band.chunks_exact(words)) {
                 pixel.copy_from_slice(&values(value)[..n]);
             }
         };
-        match source {
-            Slot::Radiance => {
-                for notes in band.iter().map(|v| v[3]) {
-                    self.outside_map += u64::from(notes % MARCH_UNFINISHED != 0.0);
-                    self.unfinished += u64::from(notes >= MARCH_UNFINISHED);
+        let layers = &mut self.layers;
+        let three = |v: &[f32]| [v[0], v[1], v[2], 0.0];
+        if *source == RADIANCE {
+            for notes in band.chunks_exact(words).map(|v| v[3]) {
+                self.outside_map += u64::from(notes % MARCH_UNFINISHED != 0.0);
+                self.unfinished += u64::from(notes >= MARCH_UNFINISHED);
+            }
+            let per_sample = 1.0 / (self.facts.quality.pixel_samples as f32).powi(2);
+            fill(layers.get_mut(&LayerName::Radiance), &|v| {
+                [v[0] * per_sample, v[1] * per_sample, v[2] * per_sample, 1.0]
+            });
+        } else if *source == VISIBLE_DEPTH {
+            fill(layers.get_mut(&LayerName::Depth), &|v| {
+                [v[0], 0.0, 0.0, 0.0]
+            });
+        } else if *source == POINTS {
+            // Position, receiver, normal, footprint.
+            fill(layers.get_mut(&LayerName::Normal), &|v| three(&v[4..]));
+            fill(layers.get_mut(&LayerName::Position), &|v| {
+                if v[3] == -1.0 {
+                    return [0.0; 4];
                 }
-                let per_sample = 1.0 / (self.facts.quality.pixel_samples as f32).powi(2);
-                fill(self.layers.get_mut(&LayerName::Radiance), &|v| {
-                    [v[0] * per_sample, v[1] * per_sample, v[2] * per_sample, 1.0]
-                });
-            }
-            Slot::VisibleNormal => {
-                fill(self.layers.get_mut(&LayerName::Depth), &|v| {
-                    [v[3], 0.0, 0.0, 0.0]
-                });
-                fill(self.layers.get_mut(&LayerName::Normal), &|v| *v);
-            }
-            Slot::VisiblePosition => {
-                fill(self.layers.get_mut(&LayerName::Position), &|v| {
-                    if v[3] == -1.0 {
-                        return [0.0; 4];
-                    }
-                    let world =
-                        DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2])) + origin;
-                    [world.x as f32, world.y as f32, world.z as f32, 0.0]
-                });
-            }
-            Slot::VisibleAlbedo => fill(self.layers.get_mut(&LayerName::Albedo), &|v| *v),
-            Slot::VisibleIrradiance => fill(self.layers.get_mut(&LayerName::Irradiance), &|v| *v),
-            _ => {}
+                let local = DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]));
+                let world = local + origin;
+                [world.x as f32, world.y as f32, world.z as f32, 0.0]
+            });
+        } else if *source == VISIBLE_ALBEDO {
+            fill(layers.get_mut(&LayerName::Albedo), &three);
+        } else if *source == POINT_IRRADIANCE {
+            fill(layers.get_mut(&LayerName::Irradiance), &three);
         }
     }
 

@@ -1,18 +1,16 @@
 //! Dispatches, draws and submissions.
 
-use std::collections::BTreeMap;
 use std::time::Instant;
 
-use super::buffers::{DrawTargets, FrameBuffers};
-use super::{KernelKey, RenderError, Renderer, ms_since, slot_name};
+use super::buffers::FrameSlots;
+use super::{RenderError, Renderer, ms_since};
 use crate::facts::SceneFacts;
 use crate::gpu::kernel::RasterTargets;
 use crate::gpu::pieces::PIECE;
-use crate::gpu::shader::Access;
-use crate::gpu::{Binding, GpuError, Kernel, RasterKernel};
-use crate::passes::desc::{Groups, PassDesc, Run, Step, Surface, Work};
-use crate::passes::level_map::EMPTY_DEPTH;
-use crate::passes::slot::Slot;
+use crate::gpu::{Binding, GpuError};
+use crate::graph::{Draw, View};
+use crate::stages::sums::FLUX;
+use crate::stages::{Caustica, Groups, Pass, Run, Step, Work};
 use crate::stats::TimeStats;
 
 /// When the recording of a submission began.
@@ -81,7 +79,7 @@ impl Renderer {
     /// Where the host times passes: submits what is recorded, waits, and starts over with an empty encoder.
     pub(super) fn submit_if_timed(
         &mut self,
-        pass: &'static PassDesc,
+        pass: &Pass,
         encoder: &mut wgpu::CommandEncoder,
         time_ms: &mut TimeStats,
     ) -> Result<(), GpuError> {
@@ -98,162 +96,117 @@ impl Renderer {
         Ok(())
     }
 
+    /// Records passes one after the other; where the host times them, submits each.
+    pub(super) fn record_all(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        passes: &[&'static Pass],
+        facts: &SceneFacts,
+        run: Run<'_>,
+        slots: &FrameSlots,
+        time_ms: &mut TimeStats,
+    ) -> Result<(), RenderError> {
+        for pass in passes {
+            self.record(encoder, pass, facts, run, slots)?;
+            self.submit_if_timed(pass, encoder, time_ms)?;
+        }
+        Ok(())
+    }
+
+    /// Records one run of a pass.
     pub(super) fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        pass: &'static PassDesc,
+        pass: &'static Pass,
         facts: &SceneFacts,
         run: Run<'_>,
-        buffers: &FrameBuffers,
-        targets: Option<&DrawTargets>,
+        slots: &FrameSlots,
     ) -> Result<(), RenderError> {
         // What has nothing to do with the sums is one kernel for both.
-        let sums = pass.reads.iter().chain(pass.writes);
-        let wide_sums = matches!(run, Run::Light { wide_sums, .. } | Run::CoarseLight { wide_sums, .. } if wide_sums)
-            && sums.into_iter().any(|&slot| slot == Slot::Flux);
-        for step in (pass.steps)(facts, run) {
-            match step.work {
-                Work::Compute(groups) => self.dispatch(
-                    encoder,
-                    pass,
-                    facts,
-                    &step,
-                    (groups, wide_sums),
-                    buffers,
-                    &|name| targets.and_then(|t| t.by_name(name, 0)),
-                )?,
-                Work::StoreLayer { layer, groups } => self.dispatch(
-                    encoder,
-                    pass,
-                    facts,
-                    &step,
-                    (Groups::Direct(groups), wide_sums),
-                    buffers,
-                    &|name| targets.and_then(|t| t.by_name(name, layer)),
-                )?,
-                Work::OverSlice { groups, plane } => self.dispatch(
-                    encoder,
-                    pass,
-                    facts,
-                    &step,
-                    (Groups::Direct(groups), wide_sums),
-                    buffers,
-                    &|name| (name == "slice").then(|| buffers.slice(plane)).flatten(),
-                )?,
-                Work::DrawSlice {
-                    plane,
-                    texels,
-                    vertices,
-                } => self.draw_slice(encoder, pass, &step, (plane, texels, vertices), buffers)?,
-                Work::DrawLevelMap { surface, vertices } => {
-                    if let Some(targets) = targets {
-                        let drawn = (surface, vertices);
-                        self.draw(encoder, pass, &step, drawn, buffers, targets)?;
-                    }
+        let wide_sums = run.has_wide_sums() && pass.touches(&FLUX);
+        for step in steps_of(pass, facts, run)? {
+            match &step.work {
+                Work::Compute(groups) => {
+                    self.dispatch(encoder, pass, facts, &step, (*groups, wide_sums), slots)?;
                 }
+                Work::Draw(draw) => self.draw(encoder, pass, &step, draw, slots)?,
             }
         }
         Ok(())
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "one call site; a struct would only rename them"
-    )]
-    pub(super) fn dispatch(
+    fn dispatch(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        pass: &'static PassDesc,
+        pass: &'static Pass,
         facts: &SceneFacts,
         step: &Step,
         (groups, wide_sums): (Groups, bool),
-        buffers: &FrameBuffers,
-        texture: &dyn Fn(&str) -> Option<wgpu::TextureView>,
+        slots: &FrameSlots,
     ) -> Result<(), RenderError> {
-        let queue = match groups {
-            Groups::Direct(_) => None,
-            Groups::Queue(slot) => Some((slot, 0)),
-            Groups::QueueAt(slot, word) => Some((slot, word)),
-        };
-        if let Some((slot, word)) = queue {
+        if let Groups::Queue(queue, word) = groups {
             encoder.copy_buffer_to_buffer(
-                buffers.get(slot_name(slot)),
+                slots.buffer(queue).0,
                 4 * u64::from(word),
-                &buffers.indirect,
+                &slots.indirect,
                 0,
                 12,
             );
         }
-        let cut = self.cut_of(encoder, pass.name, groups, buffers)?;
-        let by_planes = facts.quality.has_planes();
-        let key = (
-            pass.name,
-            step.entry,
-            facts.attenuates(),
-            wide_sums,
-            by_planes,
+        let cut = self.cut_of(encoder, pass.name, groups, slots)?;
+        let switch = |on: bool| f64::from(u8::from(on));
+        let constants = [
+            ("ATTENUATES", switch(facts.attenuates())),
+            ("WIDE_SUMS", switch(wide_sums)),
+            ("PLANES", switch(!facts.method.lights_meshes_by_hits)),
+        ];
+        let kernel = self.kernels.compute(
+            &self.gpu,
+            &self.sources,
+            (pass.shader, step.entry),
+            &constants,
             cut.is_some(),
-        );
-        if !self.kernels.contains_key(&key) {
-            let path = format!("passes/{}.wgsl", pass.name);
-            let switch = |on: bool| f64::from(u8::from(on));
-            let constants = [
-                ("ATTENUATES", switch(facts.attenuates())),
-                ("WIDE_SUMS", switch(wide_sums)),
-                ("PLANES", switch(by_planes)),
-            ];
-            let make = if cut.is_some() {
-                Kernel::in_pieces
-            } else {
-                Kernel::new
-            };
-            let kernel = make(&self.gpu, &self.sources, &path, step.entry, &constants)?;
-            self.kernels.insert(key, kernel);
-        }
+        )?;
         let Some((all, first)) = cut else {
             let launch = match groups {
                 Groups::Direct(all) => Launch::Groups(all),
-                Groups::Queue(_) | Groups::QueueAt(..) => Launch::Counted,
+                Groups::Queue(..) => Launch::Counted,
             };
-            return Ok(self.launch(encoder, key, step, launch, buffers, texture)?);
+            return Ok(self.launch(encoder, (pass, kernel), step, &[], launch, slots)?);
         };
         self.run_pieces(
             encoder,
             pass.name,
             (all, first),
             &mut |this, encoder, piece| {
-                let mut told = step.clone();
                 let uniform = bytemuck::bytes_of(&piece.uniform(all)).to_vec();
-                told.uniforms.push((PIECE, uniform));
                 let launch = Launch::Groups(piece.groups);
-                Ok(this.launch(encoder, key, &told, launch, buffers, texture)?)
+                let own = [(PIECE, uniform)];
+                Ok(this.launch(encoder, (pass, kernel), step, &own, launch, slots)?)
             },
         )
     }
 
-    /// Records a dispatch of a kernel that is there.
+    /// Records a dispatch of a kernel, with more uniforms than those of the step.
     fn launch(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        key: KernelKey,
+        (pass, kernel): (&'static Pass, crate::gpu::kernels::KernelId),
         step: &Step,
+        more_uniforms: &[(&'static str, Vec<u8>)],
         launch: Launch,
-        buffers: &FrameBuffers,
-        texture: &dyn Fn(&str) -> Option<wgpu::TextureView>,
+        slots: &FrameSlots,
     ) -> Result<(), GpuError> {
-        let uniforms = self.place_uniforms(step);
-        let kernel = &self.kernels[&key];
-        let textures: BTreeMap<&str, wgpu::TextureView> = kernel
-            .bindings()
-            .iter()
-            .filter(|bound| matches!(bound.access, Access::Texture(_)))
-            .filter_map(|bound| Some((bound.name.as_str(), texture(&bound.name)?)))
-            .collect();
+        let uniforms = self.place_uniforms(step.uniforms.iter().chain(more_uniforms));
+        let views = views_of(step, slots);
+        let kernel = self.kernels.kernel(kernel);
         let bound = kernel.bind(&self.gpu, &mut self.bind_groups, |name| {
-            let texture = textures.get(name).map(Binding::Texture);
-            texture.or_else(|| Some(uniforms.or_buffer(name, buffers)))
+            uniforms
+                .find(name)
+                .or_else(|| view(&views, name))
+                .or_else(|| slots.binding(pass, name))
         })?;
-        let timestamp_writes = self.timing.span(key.0).map(|(query_set, begin, end)| {
+        let timestamp_writes = self.timing.span(pass.name).map(|(query_set, begin, end)| {
             wgpu::ComputePassTimestampWrites {
                 query_set,
                 beginning_of_pass_write_index: Some(begin),
@@ -268,74 +221,35 @@ impl Renderer {
         compute.set_bind_group(0, &bound.group, &bound.offsets);
         match launch {
             Launch::Groups([x, y, z]) => compute.dispatch_workgroups(x, y, z),
-            Launch::Counted => compute.dispatch_workgroups_indirect(&buffers.indirect, 0),
+            Launch::Counted => compute.dispatch_workgroups_indirect(&slots.indirect, 0),
         }
         Ok(())
     }
 
-    pub(super) fn draw(
+    /// Records a draw.
+    fn draw(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        pass: &'static PassDesc,
+        pass: &'static Pass,
         step: &Step,
-        (surface, vertices): (Surface, u32),
-        buffers: &FrameBuffers,
-        targets: &DrawTargets,
+        draw: &Draw<Caustica>,
+        slots: &FrameSlots,
     ) -> Result<(), GpuError> {
-        let back = surface == Surface::Back;
-        let key = match surface {
-            Surface::Front | Surface::Back => ("level_map_fragment", back),
-            Surface::Layer(_) => ("level_map_behind", false),
-        };
-        if !self.raster_kernels.contains_key(&key) {
-            let kernel = RasterKernel::new(
-                &self.gpu,
-                &self.sources,
-                &format!("passes/{}.wgsl", pass.name),
-                (step.entry, key.0),
-                &RasterTargets {
-                    colors: &[wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint],
-                    depth: wgpu::TextureFormat::Depth32Float,
-                    depth_compare: if back {
-                        wgpu::CompareFunction::Greater
-                    } else {
-                        wgpu::CompareFunction::Less
-                    },
-                },
-            )?;
-            self.raster_kernels.insert(key, kernel);
-        }
-        let uniforms = self.place_uniforms(step);
-        let kernel = &self.raster_kernels[&key];
-        let groups = &mut self.bind_groups;
-        let bound = kernel.bind(&self.gpu, groups, |name| match (name, surface) {
-            ("previous_depth", Surface::Layer(1)) => Some(Binding::Texture(&targets.front)),
-            ("previous_depth", Surface::Layer(layer)) => further(targets, layer - 1, 0),
-            _ => Some(uniforms.or_buffer(name, buffers)),
+        let kernel = self.kernels.raster(
+            &self.gpu,
+            &self.sources,
+            (pass.shader, [step.entry, draw.fragment]),
+            targets_of(draw, slots)?,
+        )?;
+        let uniforms = self.place_uniforms(step.uniforms.iter());
+        let views = views_of(step, slots);
+        let kernel = self.kernels.raster_kernel(kernel);
+        let bound = kernel.bind(&self.gpu, &mut self.bind_groups, |name| {
+            uniforms
+                .find(name)
+                .or_else(|| view(&views, name))
+                .or_else(|| slots.binding(pass, name))
         })?;
-        let (color, normal) = match surface {
-            Surface::Front => (&targets.front, &targets.normal),
-            Surface::Back => (&targets.back, &targets.scratch_normal),
-            Surface::Layer(layer) => {
-                let [depth, normal] = &targets.layers[layer as usize - 1];
-                (depth, normal)
-            }
-        };
-        let clear = |value: f64| wgpu::Operations {
-            load: wgpu::LoadOp::Clear(wgpu::Color {
-                r: value,
-                ..wgpu::Color::default()
-            }),
-            store: wgpu::StoreOp::Store,
-        };
-        let attachment = |view, value| {
-            Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: clear(value),
-            })
-        };
         let timestamp_writes = self.timing.span(pass.name).map(|(query_set, begin, end)| {
             wgpu::RenderPassTimestampWrites {
                 query_set,
@@ -343,32 +257,128 @@ impl Renderer {
                 end_of_pass_write_index: Some(end),
             }
         });
-        let mut draw = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(step.entry),
-            color_attachments: &[
-                attachment(color, if back { -EMPTY_DEPTH } else { EMPTY_DEPTH }),
-                attachment(normal, 0.0),
-            ],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &targets.depth,
+        let mut colors = Vec::with_capacity(draw.colors.len());
+        for color in &draw.colors {
+            let view = slots.layer(color.slot, color.layer)?;
+            colors.push((view, color.clear));
+        }
+        let colors: Vec<Option<wgpu::RenderPassColorAttachment<'_>>> = colors
+            .iter()
+            .map(|(view, clear)| {
+                Some(wgpu::RenderPassColorAttachment {
+                    view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: clear.map_or(wgpu::LoadOp::Load, |[r, g, b, a]| {
+                            wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a })
+                        }),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })
+            })
+            .collect();
+        let depth_view = match &draw.depth {
+            Some(depth) => Some(slots.layer(depth.slot, 0)?),
+            None => None,
+        };
+        let depth = draw.depth.as_ref().zip(depth_view.as_ref());
+        let depth_stencil_attachment = depth.map(|(depth, view)| {
+            let has_stencil = slots
+                .format(depth.slot)
+                .is_some_and(|format| format.has_stencil_aspect());
+            wgpu::RenderPassDepthStencilAttachment {
+                view,
                 depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(if back { 0.0 } else { 1.0 }),
-                    store: wgpu::StoreOp::Discard,
+                    load: depth.clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear),
+                    store: wgpu::StoreOp::Store,
                 }),
-                stencil_ops: None,
-            }),
+                stencil_ops: has_stencil.then_some(wgpu::Operations {
+                    load: depth
+                        .stencil_clear
+                        .map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear),
+                    store: wgpu::StoreOp::Store,
+                }),
+            }
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(step.entry),
+            color_attachments: &colors,
+            depth_stencil_attachment,
             timestamp_writes,
             ..Default::default()
         });
-        draw.set_pipeline(kernel.pipeline());
-        draw.set_bind_group(0, &bound.group, &bound.offsets);
-        draw.draw(0..vertices, 0..1);
+        pass.set_pipeline(kernel.pipeline());
+        pass.set_bind_group(0, &bound.group, &bound.offsets);
+        if let Some([width, height]) = draw.viewport {
+            pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
+        }
+        pass.draw(0..draw.vertices, 0..draw.instances);
         Ok(())
     }
 }
 
-/// Depth (0) or normal (1) of a further layer.
-fn further(targets: &DrawTargets, layer: u32, which: usize) -> Option<Binding<'_>> {
-    let layer = targets.layers.get((layer as usize).checked_sub(1)?)?;
-    Some(Binding::Texture(&layer[which]))
+/// The steps of a run.
+pub(super) fn steps_of(
+    pass: &Pass,
+    facts: &SceneFacts,
+    run: Run<'_>,
+) -> Result<Vec<Step>, RenderError> {
+    pass.steps.of(facts, run).map_err(|wrong| {
+        RenderError::Gpu(GpuError::Validation(format!(
+            "pass `{}`: {wrong}",
+            pass.name
+        )))
+    })
+}
+
+/// The texture variables of a step that have names of their own.
+fn views_of(step: &Step, slots: &FrameSlots) -> Vec<(&'static str, wgpu::TextureView)> {
+    let views = step.views.iter();
+    views
+        .filter_map(|view: &View<Caustica>| {
+            Some((view.variable, slots.layer(view.slot, view.layer).ok()?))
+        })
+        .collect()
+}
+
+fn view<'a>(views: &'a [(&'static str, wgpu::TextureView)], name: &str) -> Option<Binding<'a>> {
+    let found = views.iter().find(|(variable, _)| *variable == name);
+    found.map(|(_, view)| Binding::Texture(view))
+}
+
+/// The pipeline state of a draw.
+fn targets_of(draw: &Draw<Caustica>, slots: &FrameSlots) -> Result<RasterTargets, GpuError> {
+    let format = |slot| {
+        slots.format(slot).ok_or_else(|| {
+            GpuError::Validation(format!("{slot:?} is drawn into and is no texture"))
+        })
+    };
+    let mut colors = Vec::with_capacity(draw.colors.len());
+    for color in &draw.colors {
+        colors.push(wgpu::ColorTargetState {
+            format: format(color.slot)?,
+            blend: color.blend,
+            write_mask: wgpu::ColorWrites::ALL,
+        });
+    }
+    let depth = match &draw.depth {
+        Some(depth) => Some(wgpu::DepthStencilState {
+            format: format(depth.slot)?,
+            depth_write_enabled: Some(depth.writes),
+            depth_compare: Some(depth.compare),
+            stencil: depth.stencil.clone(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        None => None,
+    };
+    Ok(RasterTargets {
+        colors,
+        depth,
+        primitive: wgpu::PrimitiveState {
+            topology: draw.topology,
+            cull_mode: draw.cull,
+            ..wgpu::PrimitiveState::default()
+        },
+    })
 }

@@ -3,21 +3,21 @@
 
 use std::time::Instant;
 
-use tokio_util::sync::CancellationToken;
-
-use super::buffers::FrameBuffers;
+use super::buffers::FrameSlots;
 use super::collect::{ACCOUNT_BYTES, has_wrapped};
 use super::commands::Recording;
-use super::{RenderError, Renderer, check_cancelled, ms_since, slot_name, timed};
+use super::executor::Job;
+use super::{RenderError, Renderer, check_cancelled, ms_since, timed};
 use crate::facts::SceneFacts;
 use crate::gpu::readback::{self, Staged};
-use crate::passes::desc::{PassDesc, Run};
-use crate::passes::slot::Slot;
-use crate::passes::{self, light};
+use crate::graph::BeamSetRun;
+use crate::stages::estimate::DIFFERENCES;
+use crate::stages::sums::ENERGY;
+use crate::stages::{Pass, Run, coarse_irradiance, estimate, light};
 use crate::stats::TimeStats;
 
 /// Passes of a light that is done again coarsely: those that make its sums, those that take them, and those that compare.
-pub(super) type ComparisonPasses = [Vec<&'static PassDesc>; 3];
+pub(super) type ComparisonPasses = [Vec<&'static Pass>; 3];
 
 /// The light done again coarsely, to be compared with the frame's maps.
 pub(super) struct Comparison {
@@ -50,41 +50,40 @@ impl Renderer {
         comparison: &mut Comparison,
         facts: &SceneFacts,
         [light, coarse_light, estimate]: &ComparisonPasses,
-        buffers: &FrameBuffers,
+        slots: &FrameSlots,
     ) -> Result<Vec<wgpu::CommandBuffer>, RenderError> {
         let coarse = &comparison.coarse;
         let in_turn: Vec<(usize, bool)> =
             comparison.wide_sums.iter().copied().enumerate().collect();
-        let in_one_go = |&(index, wide_sums): &(usize, bool)| {
-            let of_light = Run::Light { index, wide_sums };
-            let of_coarse = Run::CoarseLight {
-                index,
-                wide_sums,
-                fine: facts,
-            };
-            self.runs_in_one_go(light, coarse, of_light, buffers)
-                && self.runs_in_one_go(coarse_light, coarse, of_coarse, buffers)
-        };
-        if !in_turn.iter().all(in_one_go)
-            || !self.runs_in_one_go(estimate, facts, Run::Frame, buffers)
-        {
+        for &(index, wide_sums) in &in_turn {
+            let set = BeamSetRun { index, wide_sums };
+            let of_set = Run::BeamSet(set);
+            let of_coarse = Run::CoarseBeamSet(set, facts);
+            if !self.runs_in_one_submission(light, coarse, of_set, slots)?
+                || !self.runs_in_one_submission(coarse_light, coarse, of_coarse, slots)?
+            {
+                return Ok(Vec::new());
+            }
+        }
+        if !self.runs_in_one_submission(estimate, facts, Run::Estimate, slots)? {
             return Ok(Vec::new());
         }
         let passes = (light.as_slice(), coarse_light.as_slice());
         let mut nothing = TimeStats::default();
         let (mut recorded, mut accounts) = (Vec::new(), Vec::new());
         for &(index, wide_sums) in &in_turn {
-            let mut encoder = self.begin_light(coarse, wide_sums, buffers);
+            let mut encoder = self.encoder("light");
+            slots.clear_for_beam_set(&mut encoder, coarse, wide_sums);
             accounts.push(self.record_coarse_light(
                 &mut encoder,
                 (coarse, facts),
                 (index, wide_sums),
                 passes,
-                buffers,
+                slots,
                 &mut nothing,
             )?);
             if index + 1 == in_turn.len() {
-                let differences = self.record_estimate(&mut encoder, estimate, facts, buffers)?;
+                let differences = self.record_estimate(&mut encoder, estimate, facts, slots)?;
                 comparison.sent = Some((differences, std::mem::take(&mut accounts)));
             }
             recorded.push(encoder.finish());
@@ -97,20 +96,20 @@ impl Renderer {
     pub(super) fn send_comparison(
         &mut self,
         comparison: &mut Comparison,
-        facts: &SceneFacts,
+        job: Job<'_>,
         [light, coarse_light, estimate]: &ComparisonPasses,
-        buffers: &FrameBuffers,
-        cancel: &CancellationToken,
+        slots: &FrameSlots,
         time_ms: &mut TimeStats,
     ) -> Result<(), RenderError> {
+        let facts = job.facts;
         let coarse = &comparison.coarse;
         let mut started = Recording::start(time_ms);
         let (mut encoder, accounts) = self.coarse_lights(
             (coarse, facts),
             &comparison.wide_sums,
             (light, coarse_light),
-            buffers,
-            cancel,
+            slots,
+            job,
             time_ms,
         )?;
         let by_host = self.timing.times_by_host();
@@ -118,15 +117,15 @@ impl Renderer {
             let lights = std::mem::replace(&mut encoder, self.encoder("estimate"));
             let began = started.at;
             self.submit(lights, started, time_ms)?;
-            let name = passes::coarse_irradiance::PASS.name;
+            let name = coarse_irradiance::PASS.name;
             self.timing.note(name, ms_since(began));
             started = Recording::start(time_ms);
         }
-        let differences = self.record_estimate(&mut encoder, estimate, facts, buffers)?;
+        let differences = self.record_estimate(&mut encoder, estimate, facts, slots)?;
         if by_host {
             let ms = self.submit(encoder, started, time_ms)?;
             // Where it ran in pieces, those are noted already.
-            self.timing.note(passes::estimate::PASS.name, ms);
+            self.timing.note(estimate::PASS.name, ms);
         } else {
             self.send(encoder, started, time_ms);
         }
@@ -138,15 +137,15 @@ impl Renderer {
     fn record_estimate(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        estimate: &[&'static PassDesc],
+        passes: &[&'static Pass],
         facts: &SceneFacts,
-        buffers: &FrameBuffers,
+        slots: &FrameSlots,
     ) -> Result<Staged, RenderError> {
-        for pass in estimate {
-            self.record(encoder, pass, facts, Run::Frame, buffers, None)?;
+        for pass in passes {
+            self.record(encoder, pass, facts, Run::Estimate, slots)?;
         }
-        let differences = buffers.get(slot_name(Slot::Differences));
-        let bytes = Slot::Differences.bytes(facts);
+        let (differences, _) = slots.buffer(&DIFFERENCES);
+        let bytes = DIFFERENCES.bytes(facts);
         Ok(readback::stage(&self.gpu, encoder, differences, bytes))
     }
 
@@ -155,16 +154,15 @@ impl Renderer {
     pub(super) fn read_comparison(
         &mut self,
         mut comparison: Comparison,
-        facts: &SceneFacts,
+        job: Job<'_>,
         passes: &ComparisonPasses,
-        buffers: &FrameBuffers,
-        cancel: &CancellationToken,
+        slots: &FrameSlots,
         time_ms: &mut TimeStats,
     ) -> Result<Vec<[f32; 4]>, RenderError> {
         loop {
             let Some((differences, accounts)) = comparison.sent.take() else {
                 let again = &mut comparison;
-                self.send_comparison(again, facts, passes, buffers, cancel, time_ms)?;
+                self.send_comparison(again, job, passes, slots, time_ms)?;
                 continue;
             };
             timed(&mut time_ms.gpu, || self.gpu.wait())?;
@@ -193,27 +191,28 @@ impl Renderer {
         &mut self,
         (coarse, fine): (&SceneFacts, &SceneFacts),
         wide_sums: &[bool],
-        (sums, maps): (&[&'static PassDesc], &[&'static PassDesc]),
-        buffers: &FrameBuffers,
-        cancel: &CancellationToken,
+        (sums, maps): (&[&'static Pass], &[&'static Pass]),
+        slots: &FrameSlots,
+        job: Job<'_>,
         time_ms: &mut TimeStats,
     ) -> Result<(wgpu::CommandEncoder, Vec<Staged>), RenderError> {
         let mut recorded: Option<wgpu::CommandEncoder> = None;
         let mut accounts = Vec::new();
         for (index, &wide_sums) in wide_sums.iter().enumerate() {
-            check_cancelled(cancel)?;
+            check_cancelled(job.cancel)?;
             // The next light's receivers take the place of this one's, so what reads those has to be on its way.
             if let Some(light) = recorded.take() {
                 self.gpu.queue.submit([light.finish()]);
             }
-            self.set_receivers(coarse, index, buffers);
-            let mut encoder = self.begin_light(coarse, wide_sums, buffers);
+            self.set_receivers(coarse, index, slots);
+            let mut encoder = self.encoder("light");
+            slots.clear_for_beam_set(&mut encoder, coarse, wide_sums);
             accounts.push(self.record_coarse_light(
                 &mut encoder,
                 (coarse, fine),
                 (index, wide_sums),
                 (sums, maps),
-                buffers,
+                slots,
                 time_ms,
             )?);
             recorded = Some(encoder);
@@ -228,22 +227,17 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         (coarse, fine): (&SceneFacts, &SceneFacts),
         (index, wide_sums): (usize, bool),
-        (sums, maps): (&[&'static PassDesc], &[&'static PassDesc]),
-        buffers: &FrameBuffers,
+        (sums, maps): (&[&'static Pass], &[&'static Pass]),
+        slots: &FrameSlots,
         time_ms: &mut TimeStats,
     ) -> Result<Staged, RenderError> {
-        self.timing
-            .group(Some(passes::coarse_irradiance::PASS.name));
-        let run = Run::Light { index, wide_sums };
-        self.record_all(encoder, sums, coarse, run, buffers, time_ms)?;
-        let run = Run::CoarseLight {
-            index,
-            wide_sums,
-            fine,
-        };
-        self.record_all(encoder, maps, coarse, run, buffers, time_ms)?;
+        self.timing.group(Some(coarse_irradiance::PASS.name));
+        let set = BeamSetRun { index, wide_sums };
+        self.record_all(encoder, sums, coarse, Run::BeamSet(set), slots, time_ms)?;
+        let run = Run::CoarseBeamSet(set, fine);
+        self.record_all(encoder, maps, coarse, run, slots, time_ms)?;
         self.timing.group(None);
-        let energy = buffers.get(slot_name(Slot::Energy));
+        let (energy, _) = slots.buffer(&ENERGY);
         Ok(readback::stage(&self.gpu, encoder, energy, ACCOUNT_BYTES))
     }
 }

@@ -1,75 +1,60 @@
-//! The order of a frame: level maps, then light by light, then band by band. What a pass does is all in its description.
+//! The order of a frame: level maps, then beam set by beam set, then band by band. What a pass does is all in its description.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
 use tokio_util::sync::CancellationToken;
 
-use super::buffers::{EMPTY_LIST, FrameBuffers, INDIRECT, QUEUE_HEADS, clear_for_light};
+use super::buffers::FrameSlots;
 use super::collect::{ACCOUNT_BYTES, has_wrapped};
-use super::commands::Recording;
+use super::commands::{Recording, steps_of};
 use super::comparison::{Comparison, ComparisonPasses};
-use super::{
-    RenderError, Renderer, RunResult, check_cancelled, collect, geometry, ms_since, slot_name,
-    timed,
-};
-use crate::facts::SceneFacts;
+use super::geometry::Geometry;
+use super::{RenderError, Renderer, RunResult, check_cancelled, collect, ms_since, timed};
 use crate::facts::placement::{LevelBox, LevelMapKey};
+use crate::facts::{Product, SceneFacts};
 use crate::gpu::{GpuError, readback};
-use crate::passes::desc::{PassDesc, Repeat, Run};
-use crate::passes::slot::{self, Lifetime, Slot, band_rows};
-use crate::passes::{self, light};
-use crate::plan::{self, Plan, Wanted};
+use crate::graph::plan::Phase;
+use crate::graph::{BandRun, BeamSetRun, Scope};
+use crate::plan::{self, FramePlan, Wanted};
 use crate::scene::{LayerName, ResolvedScene};
+use crate::stages::irradiance::IRRADIANCE;
+use crate::stages::level_map::LevelMapRun;
+use crate::stages::points::{band_rows, size};
+use crate::stages::reference_planes::PLANE_COUNTS;
+use crate::stages::shade::RADIANCE;
+use crate::stages::sums::ENERGY;
+use crate::stages::{Pass, Run, light};
 use crate::stats::{AccuracyStats, TimeStats};
+
+/// What a frame is made of: its scene's facts, its plan, and what nobody waits for any more.
+#[derive(Clone, Copy)]
+pub(super) struct Job<'a> {
+    pub(super) facts: &'a SceneFacts,
+    pub(super) plan: &'a FramePlan,
+    pub(super) missing: &'a [LevelMapKey],
+    pub(super) cancel: &'a CancellationToken,
+}
 
 impl Renderer {
     pub(super) fn execute(
         &mut self,
         resolved: &ResolvedScene,
-        facts: &SceneFacts,
-        wanted: Wanted,
-        plan: &Plan,
-        missing: &[LevelMapKey],
-        cancel: &CancellationToken,
+        job: Job<'_>,
     ) -> Result<RunResult, RenderError> {
-        let buffers = self.prepare(resolved, facts, plan)?;
-        let result = self.run_passes(facts, wanted, plan, missing, &buffers, cancel);
-        let targets = missing.iter().map(slot::draw_target_bytes).max();
-        let slices = plan
-            .slots
-            .iter()
-            .find(|s| s.name == slot_name(Slot::Slices));
+        let mut slots = self.prepare(resolved, job.facts, job.plan)?;
+        let result = self.run_passes(job, &mut slots);
         let peak_bytes = self.pool.peak_bytes()
-            + slices.map_or(0, |planned| planned.bytes)
-            + targets.unwrap_or(0)
+            + job.plan.graph.texture_bytes
             + self.gpu.take_readback_peak()
-            + slot::differences_beside(facts)
+            + plan::differences_beside(job.facts)
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
-            + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes);
+            + self.geometry.in_use().map_or(0, Geometry::bytes);
         let report = self
             .watches_allocator
             .then(|| self.gpu.device.generate_allocator_report())
             .flatten();
-        let FrameBuffers {
-            by_name,
-            empty,
-            queue_heads,
-            indirect,
-            slices: _,
-        } = buffers;
-        for (name, buffer) in by_name {
-            if name != slot_name(Slot::Geometry) && name != slot_name(Slot::LevelMaps) {
-                self.pool.give_back(name, buffer);
-            }
-        }
-        for (label, buffer) in [
-            (EMPTY_LIST, empty),
-            (QUEUE_HEADS, queue_heads),
-            (INDIRECT, indirect),
-        ] {
-            self.pool.give_back(label, buffer);
-        }
+        self.give_back(slots);
         result.map(|mut run| {
             run.peak_bytes = peak_bytes;
             run.allocated_bytes = report.map(|report| report.total_allocated_bytes);
@@ -79,99 +64,47 @@ impl Renderer {
 
     fn run_passes(
         &mut self,
-        facts: &SceneFacts,
-        wanted: Wanted,
-        plan: &Plan,
-        missing: &[LevelMapKey],
-        buffers: &FrameBuffers,
-        cancel: &CancellationToken,
+        job: Job<'_>,
+        slots: &mut FrameSlots,
     ) -> Result<RunResult, RenderError> {
+        let Job { facts, plan, .. } = job;
         let mut time_ms = TimeStats::default();
-        let kept: Vec<&'static PassDesc> = passes::ALL
-            .into_iter()
-            .filter(|pass| plan.passes.iter().any(|p| p.name == pass.name))
-            .collect();
-        let of = |repeat: Repeat| {
-            kept.iter()
-                .copied()
-                .filter(move |pass| pass.repeat == repeat)
-                .collect::<Vec<_>>()
-        };
-        if !of(Repeat::LevelMap).is_empty() {
-            let passes = of(Repeat::LevelMap);
-            self.build_level_maps(facts, &passes, missing, buffers, cancel, &mut time_ms)?;
-        }
-        let mut accounts = Vec::new();
-        let mut widened = Vec::new();
-        let mut plane_counts: Vec<Vec<[u32; 4]>> = Vec::new();
-        let of_lights: Vec<&'static PassDesc> = kept
-            .iter()
-            .copied()
-            .filter(|pass| matches!(pass.repeat, Repeat::Light | Repeat::FineLight))
-            .collect();
-        let comparing = [
-            of(Repeat::Light),
-            of(Repeat::CoarseLight),
-            of(Repeat::Frame),
-        ];
+        self.run_once(job, slots, &mut time_ms)?;
+        self.build_level_maps(job, slots, &mut time_ms)?;
+        slots.end_phase(plan, Phase::Preparation);
+        let comparing = [Scope::BeamSet, Scope::CoarseBeamSet, Scope::Estimate]
+            .map(|scope| plan.graph.of(scope));
         let mut comparison = (!comparing[2].is_empty()).then(|| Comparison::new(facts));
-        let lights = if of_lights.is_empty() {
-            0
-        } else {
-            facts.lights.beam_sets.len()
-        };
-        for light in 0..lights {
-            check_cancelled(cancel)?;
-            let reruns = self.wide_sum_reruns;
-            // After the last light it is known what comes.
-            let next = comparison.as_mut().filter(|_| light + 1 == lights);
-            let next = next.map(|comparison| (comparison, &comparing));
-            let found = self.run_light(facts, light, &of_lights, next, buffers, &mut time_ms)?;
-            if let Some((account, counts)) = found {
-                accounts.extend(account);
-                plane_counts.extend(counts);
-            }
-            if self.wide_sum_reruns > reruns {
-                widened.push(collect::widened(facts.lights.beam_sets[light].light_index));
-            }
-        }
-        let (energy, mut warnings) = collect::energy(facts, &accounts);
-        warnings.extend(widened);
+        let sums = self.run_beam_sets(job, &mut comparison, &comparing, slots, &mut time_ms)?;
+        let (energy, mut warnings) = collect::energy(facts, &sums.accounts);
+        warnings.extend(sums.widened);
         if let Some(comparison) = comparison.as_mut().filter(|c| c.sent.is_none()) {
-            self.send_comparison(comparison, facts, &comparing, buffers, cancel, &mut time_ms)?;
+            self.send_comparison(comparison, job, &comparing, slots, &mut time_ms)?;
         }
         let mut result = RunResult {
             width: 0,
             height: 0,
             layers: BTreeMap::new(),
             energy,
-            planes: collect::planes(facts, &plane_counts),
+            planes: collect::planes(facts, &sums.plane_counts),
             accuracy: None,
             warnings,
             time_ms,
             peak_bytes: 0,
-            level_maps_built: u32::try_from(missing.len()).unwrap_or(u32::MAX),
+            level_maps_built: u32::try_from(job.missing.len()).unwrap_or(u32::MAX),
             allocated_bytes: None,
         };
-        if wanted != Wanted::Frame {
-            // Nothing but what has been sent already.
-        } else if let Some(camera) = facts.output.camera {
-            self.run_bands(
-                facts,
-                camera.width,
-                camera.height,
-                &of(Repeat::Band),
-                buffers,
-                cancel,
-                &mut result,
-            )?;
-        } else {
-            self.collect_map(facts, buffers, &mut result)?;
+        if plan.wanted == Wanted::Frame {
+            let at_points = facts.method.product == Product::PointIrradiance;
+            if facts.output.camera.is_some() || at_points {
+                self.run_bands(job, slots, &mut result)?;
+            } else {
+                self.collect_map(facts, slots, &mut result)?;
+            }
         }
         if let Some(comparison) = comparison {
             let time_ms = &mut result.time_ms;
-            let differences =
-                self.read_comparison(comparison, facts, &comparing, buffers, cancel, time_ms)?;
+            let differences = self.read_comparison(comparison, job, &comparing, slots, time_ms)?;
             result.accuracy = Some(AccuracyStats {
                 estimated_error: collect::estimated_error(facts, &differences),
                 chosen: None,
@@ -180,46 +113,106 @@ impl Renderer {
         Ok(result)
     }
 
-    /// Follows one light and returns its raw account, and the counts of its planes where there are any; with narrow flux sums where
-    /// those are fine enough, and once more with wide ones if they wrapped. Sends `next` too if that can be recorded while the GPU is at work on the light.
-    fn run_light(
+    /// Runs what is done once, before any light.
+    fn run_once(
+        &mut self,
+        job: Job<'_>,
+        slots: &FrameSlots,
+        time_ms: &mut TimeStats,
+    ) -> Result<(), RenderError> {
+        let passes = job.plan.graph.of(Scope::Frame);
+        if passes.is_empty() {
+            return Ok(());
+        }
+        let started = Recording::start(time_ms);
+        let mut encoder = self.encoder("frame");
+        self.record_all(&mut encoder, &passes, job.facts, Run::Frame, slots, time_ms)?;
+        self.submit(encoder, started, time_ms)?;
+        Ok(())
+    }
+
+    /// Follows all beam sets.
+    fn run_beam_sets(
+        &mut self,
+        job: Job<'_>,
+        comparison: &mut Option<Comparison>,
+        comparing: &ComparisonPasses,
+        slots: &FrameSlots,
+        time_ms: &mut TimeStats,
+    ) -> Result<BeamSetSums, RenderError> {
+        let facts = job.facts;
+        let mut all = BeamSetSums::default();
+        // In the order of the list: passes that also follow coarse sets, and those that do not.
+        let passes: Vec<&'static Pass> = (job.plan.graph.passes.iter())
+            .map(|(pass, _)| *pass)
+            .filter(|pass| matches!(pass.steps.scope(), Scope::BeamSet | Scope::FineBeamSet))
+            .collect();
+        let sets = if passes.is_empty() {
+            0
+        } else {
+            facts.lights.beam_sets.len()
+        };
+        for index in 0..sets {
+            check_cancelled(job.cancel)?;
+            let reruns = self.wide_sum_reruns;
+            // After the last one it is known what comes.
+            let next = comparison.as_mut().filter(|_| index + 1 == sets);
+            let next = next.map(|comparison| (comparison, comparing));
+            let found = self.run_beam_set(facts, index, &passes, next, slots, time_ms)?;
+            if let Some((account, counts)) = found {
+                all.accounts.extend(account);
+                all.plane_counts.extend(counts);
+            }
+            if self.wide_sum_reruns > reruns {
+                let light = facts.lights.beam_sets[index].light_index;
+                all.widened.push(collect::widened(light));
+            }
+        }
+        Ok(all)
+    }
+
+    /// Follows one beam set and returns its raw account, and the counts of its planes where there are any; with narrow flux sums where
+    /// those are fine enough, and once more with wide ones if they wrapped. Sends `next` too if that can be recorded while the GPU is at
+    /// work on the set.
+    fn run_beam_set(
         &mut self,
         facts: &SceneFacts,
         index: usize,
-        passes: &[&'static PassDesc],
+        passes: &[&'static Pass],
         mut next: Option<(&mut Comparison, &ComparisonPasses)>,
-        buffers: &FrameBuffers,
+        slots: &FrameSlots,
         time_ms: &mut TimeStats,
-    ) -> Result<Option<LightSums>, RenderError> {
-        let Some(energy) = buffers.by_name.get(slot_name(Slot::Energy)) else {
+    ) -> Result<Option<RawSums>, RenderError> {
+        let Some((energy, _)) = slots.held_buffer(&ENERGY) else {
             return Ok(None);
         };
-        let planes = buffers.by_name.get(slot_name(Slot::PlaneCounts));
-        let (sums, maps): (Vec<&'static PassDesc>, Vec<&'static PassDesc>) = passes
+        let planes = slots.held_buffer(&PLANE_COUNTS);
+        let (sums, maps): (Vec<&'static Pass>, Vec<&'static Pass>) = passes
             .iter()
             .copied()
-            .partition(|pass| pass.writes.iter().all(|slot| !slot.is_map()));
+            .partition(|pass| !pass.writes.contains(&&IRRADIANCE));
         let mut wide_sums = light::needs_wide_sums(facts, index);
         loop {
-            let run = Run::Light { index, wide_sums };
+            let run = Run::BeamSet(BeamSetRun { index, wide_sums });
             let started = Recording::start(time_ms);
-            self.set_receivers(facts, index, buffers);
-            let mut encoder = self.begin_light(facts, wide_sums, buffers);
-            self.record_all(&mut encoder, &sums, facts, run, buffers, time_ms)?;
+            self.set_receivers(facts, index, slots);
+            let mut encoder = self.encoder("light");
+            slots.clear_for_beam_set(&mut encoder, facts, wide_sums);
+            self.record_all(&mut encoder, &sums, facts, run, slots, time_ms)?;
             let staged = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
-            let staged_counts = planes.map(|buffer| {
-                let bytes = Slot::PlaneCounts.bytes(facts);
+            let staged_counts = planes.map(|(buffer, _)| {
+                let bytes = PLANE_COUNTS.bytes(facts);
                 readback::stage(&self.gpu, &mut encoder, buffer, bytes)
             });
             let submitted = self.send(encoder, started, time_ms);
             let timed_so_far = self.timing.mark();
             let mut ahead = Vec::new();
-            if self.runs_in_one_go(&maps, facts, run, buffers) {
+            if self.runs_in_one_submission(&maps, facts, run, slots)? {
                 let mut encoder = self.encoder("light's maps");
-                self.record_all(&mut encoder, &maps, facts, run, buffers, time_ms)?;
+                self.record_all(&mut encoder, &maps, facts, run, slots, time_ms)?;
                 ahead.push(encoder.finish());
                 if let Some((comparison, passes)) = &mut next {
-                    ahead.extend(self.record_comparison(comparison, facts, passes, buffers)?);
+                    ahead.extend(self.record_comparison(comparison, facts, passes, slots)?);
                 }
             }
             self.gpu.wait()?;
@@ -242,7 +235,7 @@ impl Renderer {
             if ahead.is_empty() {
                 let started = Recording::start(time_ms);
                 let mut encoder = self.encoder("light's maps");
-                self.record_all(&mut encoder, &maps, facts, run, buffers, time_ms)?;
+                self.record_all(&mut encoder, &maps, facts, run, slots, time_ms)?;
                 self.send(encoder, started, time_ms);
                 return Ok(Some((account, counts)));
             }
@@ -250,9 +243,9 @@ impl Renderer {
             timed(&mut time_ms.upload, || {
                 let mut ahead = ahead.into_iter();
                 self.gpu.queue.submit(ahead.next());
-                for (coarse_light, commands) in ahead.enumerate() {
+                for (coarse_set, commands) in ahead.enumerate() {
                     if let Some((comparison, _)) = &next {
-                        self.set_receivers(&comparison.coarse, coarse_light, buffers);
+                        self.set_receivers(&comparison.coarse, coarse_set, slots);
                     }
                     self.gpu.queue.submit([commands]);
                 }
@@ -263,102 +256,65 @@ impl Renderer {
 
     /// Whether passes can be recorded before their turn: none of them is cut into pieces, or timed by the host, for which it would have
     /// to run when it is recorded.
-    pub(super) fn runs_in_one_go(
+    pub(super) fn runs_in_one_submission(
         &self,
-        passes: &[&'static PassDesc],
+        passes: &[&'static Pass],
         facts: &SceneFacts,
         run: Run<'_>,
-        buffers: &FrameBuffers,
-    ) -> bool {
-        let mut steps = passes.iter().flat_map(|pass| (pass.steps)(facts, run));
-        !self.timing.times_by_host() && steps.all(|step| !self.may_be_cut(&step, buffers))
-    }
-
-    /// Sets the receivers of a light, for what is submitted from now on.
-    pub(super) fn set_receivers(&self, facts: &SceneFacts, index: usize, buffers: &FrameBuffers) {
-        if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Receivers)) {
-            let receivers = self.receivers(facts, facts.lights.beam_sets[index].light);
-            let bytes = bytemuck::cast_slice(&receivers);
-            self.gpu.queue.write_buffer(buffer, 0, bytes);
+        slots: &FrameSlots,
+    ) -> Result<bool, RenderError> {
+        if self.timing.times_by_host() {
+            return Ok(false);
         }
-    }
-
-    /// Begins a light's commands, with empty queues and its flux sums at zero.
-    pub(super) fn begin_light(
-        &self,
-        facts: &SceneFacts,
-        wide_sums: bool,
-        buffers: &FrameBuffers,
-    ) -> wgpu::CommandEncoder {
-        let mut encoder = self.encoder("light");
-        clear_for_light(&mut encoder, buffers, slot::flux_bytes(facts, wide_sums));
-        encoder
-    }
-
-    /// Records passes one after the other; where the host times them, submits each.
-    pub(super) fn record_all(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        passes: &[&'static PassDesc],
-        facts: &SceneFacts,
-        run: Run<'_>,
-        buffers: &FrameBuffers,
-        time_ms: &mut TimeStats,
-    ) -> Result<(), RenderError> {
         for pass in passes {
-            self.record(encoder, pass, facts, run, buffers, None)?;
-            self.submit_if_timed(pass, encoder, time_ms)?;
+            let steps = steps_of(pass, facts, run)?;
+            if steps.iter().any(|step| self.may_be_cut(step, slots)) {
+                return Ok(false);
+            }
         }
-        Ok(())
+        Ok(true)
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "one call site; a struct would only rename them"
-    )]
+    /// Makes the picture band by band (or the map, where the method finds the light at points).
     fn run_bands(
         &mut self,
-        facts: &SceneFacts,
-        width: u32,
-        height: u32,
-        passes: &[&'static PassDesc],
-        buffers: &FrameBuffers,
-        cancel: &CancellationToken,
+        job: Job<'_>,
+        slots: &FrameSlots,
         result: &mut RunResult,
     ) -> Result<(), RenderError> {
+        let facts = job.facts;
+        let Some([width, height]) = size(facts) else {
+            return Ok(());
+        };
         (result.width, result.height) = (width, height);
-        let mut view = collect::ViewLayers::new(facts, width, height);
+        let mut view = collect::PointLayers::new(facts, width, height);
+        let awaited = plan::awaited_layers(facts);
         let step = band_rows(width, height);
         for first_row in (0..height).step_by(step as usize) {
             let rows = step.min(height - first_row);
             let pixels = u64::from(width) * u64::from(rows);
             for sample in samples(facts) {
-                check_cancelled(cancel)?;
+                check_cancelled(job.cancel)?;
                 let started = Recording::start(&result.time_ms);
-                let run = Run::Band {
+                let band = BandRun {
                     first_row,
                     rows,
                     offset: sample.offset,
                     sample_index: sample.index,
                 };
                 let mut encoder = self.encoder("band");
-                let time_ms = &mut result.time_ms;
-                self.record_all(&mut encoder, passes, facts, run, buffers, time_ms)?;
+                self.record_band(&mut encoder, job, band, slots, &mut result.time_ms)?;
                 self.submit(encoder, started, &mut result.time_ms)?;
                 let started = Instant::now();
-                let layers = plan::awaited(facts, Wanted::Frame);
-                for slot in layers
-                    .into_iter()
-                    .filter(|s| s.info().lifetime == Lifetime::Band)
-                {
-                    let wanted = if slot == Slot::Radiance {
+                for &slot in &awaited {
+                    let wanted = if *slot == RADIANCE {
                         sample.ends_radiance
                     } else {
                         sample.is_middle
                     };
                     if wanted {
-                        let band: Vec<[f32; 4]> =
-                            readback::read(&self.gpu, buffers.get(slot_name(slot)), 16 * pixels)?;
+                        let bytes = plan::bytes_per_point(slot) * pixels;
+                        let band = readback::read(&self.gpu, slots.buffer(slot).0, bytes)?;
                         view.add_band(slot, first_row, &band);
                     }
                 }
@@ -371,17 +327,63 @@ impl Renderer {
         Ok(())
     }
 
+    /// Records the passes of a band; those that work per beam set for each set, which is followed again where there are several.
+    fn record_band(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        job: Job<'_>,
+        band: BandRun,
+        slots: &FrameSlots,
+        time_ms: &mut TimeStats,
+    ) -> Result<(), RenderError> {
+        let Job { facts, plan, .. } = job;
+        let picture: Vec<&'static Pass> = (plan.graph.passes.iter())
+            .map(|(pass, _)| *pass)
+            .filter(|pass| Phase::of(pass.steps.scope()) == Phase::Picture)
+            .collect();
+        let per_set = plan.graph.of(Scope::BandBeamSet);
+        let sets = facts.lights.beam_sets.len();
+        for pass in picture {
+            if pass.steps.scope() == Scope::Band {
+                self.record_all(encoder, &[pass], facts, Run::Band(band), slots, time_ms)?;
+                continue;
+            }
+            if pass.name != per_set[0].name {
+                // Those of a set run together.
+                continue;
+            }
+            for index in 0..sets {
+                let set = BeamSetRun {
+                    index,
+                    wide_sums: light::needs_wide_sums(facts, index),
+                };
+                if sets > 1 {
+                    // What is submitted so far reads the receivers of the set before.
+                    let recorded = std::mem::replace(encoder, self.encoder("band"));
+                    self.gpu.queue.submit([recorded.finish()]);
+                    self.set_receivers(facts, index, slots);
+                    slots.clear_for_beam_set(encoder, facts, set.wide_sums);
+                    let again = plan.graph.of(Scope::BeamSet);
+                    self.record_all(encoder, &again, facts, Run::BeamSet(set), slots, time_ms)?;
+                }
+                let run = Run::BandBeamSet(band, set);
+                self.record_all(encoder, &per_set, facts, run, slots, time_ms)?;
+            }
+        }
+        Ok(())
+    }
+
     fn collect_map(
         &mut self,
         facts: &SceneFacts,
-        buffers: &FrameBuffers,
+        slots: &FrameSlots,
         result: &mut RunResult,
     ) -> Result<(), RenderError> {
         let map = collect::map_of(facts);
         (result.width, result.height) = (map.width, map.height);
         let texels = map.width as usize * map.height as usize;
         let mut values = vec![0.0_f32; 3 * texels];
-        if let Some(buffer) = buffers.by_name.get(slot_name(Slot::Irradiance)) {
+        if let Some((buffer, _)) = slots.held_buffer(&IRRADIANCE) {
             let started = Recording::start(&result.time_ms);
             let mut encoder = self.encoder("map");
             let bytes = 12 * (map.first_texel + texels as u64);
@@ -395,8 +397,8 @@ impl Renderer {
         if let (Some(key), true) = (&map.level_map, !facts.lights.beam_sets.is_empty()) {
             let arena = self.arena.as_ref().zip(self.level_maps.offset(key));
             if let Some((arena, offset)) = arena {
-                cosines =
-                    Some(self.read_normals(arena, offset, key, facts.output.receiver_layer)?);
+                let layer = facts.output.receiver_layer;
+                cosines = Some(self.read_normals(arena, offset, key, layer)?);
             }
         }
         let layer = collect::finish_map(facts, &map, values, cosines.as_deref())?;
@@ -429,43 +431,39 @@ impl Renderer {
 
     fn build_level_maps(
         &mut self,
-        facts: &SceneFacts,
-        passes: &[&'static PassDesc],
-        missing: &[LevelMapKey],
-        buffers: &FrameBuffers,
-        cancel: &CancellationToken,
+        job: Job<'_>,
+        slots: &FrameSlots,
         time_ms: &mut TimeStats,
     ) -> Result<(), RenderError> {
-        let boxes: BTreeMap<&LevelMapKey, &LevelBox> = facts
-            .lights
-            .lit
-            .iter()
+        let passes = job.plan.graph.of(Scope::LevelMap);
+        if passes.is_empty() {
+            return Ok(());
+        }
+        let lit = job.facts.lights.lit.iter();
+        let boxes: BTreeMap<&LevelMapKey, &LevelBox> = lit
             .flat_map(|light| light.boxes.iter().flatten())
             .map(|level_box| (&level_box.key, level_box))
             .collect();
-        for key in missing {
-            check_cancelled(cancel)?;
+        for key in job.missing {
+            check_cancelled(job.cancel)?;
             let started = Recording::start(time_ms);
             let (Some(level_box), Some(offset), Some(geometry)) = (
                 boxes.get(key),
                 self.level_maps.offset(key),
-                self.geometry.as_ref(),
+                self.geometry.in_use(),
             ) else {
                 continue;
             };
             let place = geometry.place(&key.mesh);
-            let run = Run::LevelMap {
-                level_box,
+            let level_map = LevelMapRun {
+                level_box: (*level_box).clone(),
                 arena_offset: u32::try_from(offset / 4).unwrap_or(u32::MAX),
                 first_triangle: place.first_triangle,
                 triangles: place.triangles,
             };
-            let targets = self.draw_targets(key);
+            let run = Run::LevelMap(&level_map);
             let mut encoder = self.encoder("level map");
-            for pass in passes {
-                self.record(&mut encoder, pass, facts, run, buffers, Some(&targets))?;
-                self.submit_if_timed(pass, &mut encoder, time_ms)?;
-            }
+            self.record_all(&mut encoder, &passes, job.facts, run, slots, time_ms)?;
             self.submit(encoder, started, time_ms)?;
             self.level_maps.built(key);
         }
@@ -473,8 +471,17 @@ impl Renderer {
     }
 }
 
-/// What a light's sums came to: its raw account, and the counts of its planes.
-type LightSums = (Vec<u64>, Option<Vec<[u32; 4]>>);
+/// What a beam set's sums came to: its raw account, and the counts of its planes.
+type RawSums = (Vec<u64>, Option<Vec<[u32; 4]>>);
+
+/// The sums of all beam sets, one behind the other.
+#[derive(Default)]
+struct BeamSetSums {
+    accounts: Vec<u64>,
+    plane_counts: Vec<Vec<[u32; 4]>>,
+    /// Warnings about sets that were followed again with wide sums.
+    widened: Vec<crate::stats::Warning>,
+}
 
 /// One round of rays through the pixels of a band.
 struct Sample {

@@ -8,7 +8,6 @@ mod executor;
 mod geometry;
 mod pieces;
 mod self_check;
-mod slices;
 mod tune;
 mod warm;
 
@@ -25,10 +24,13 @@ use crate::frame::Frame;
 use crate::gpu::shader::ShaderSources;
 use crate::gpu::timing::Timing;
 use crate::gpu::uniforms::Uniforms;
-use crate::gpu::{BindGroups, BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
-use crate::passes::{self, Repeat, Slot, shaders};
-use crate::plan::{self, Cached, Plan, Wanted};
+use crate::gpu::{BindGroups, BufferPool, GpuContext, GpuError, KernelCache};
+use crate::graph::{PlanError, Scope};
+use crate::methods;
+use crate::plan::{self, Cached, FramePlan, Plan, Wanted};
 use crate::scene::{ResolvedScene, SceneError};
+use crate::stages::objects::GEOMETRY;
+use crate::stages::shaders;
 use crate::stats::{
     AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
     TimeStats, Warning,
@@ -71,21 +73,14 @@ pub enum RenderError {
     Cancelled,
 }
 
-impl From<plan::PlanError> for RenderError {
-    fn from(error: plan::PlanError) -> Self {
+impl From<PlanError> for RenderError {
+    fn from(error: PlanError) -> Self {
         Self::Gpu(GpuError::Validation(error.to_string()))
     }
 }
 
 /// Idle polls (one a second) after which buffers kept for the next frame are given up.
 const IDLE_POLLS: u32 = 5;
-
-/// Pass, entry point, whether it attenuates, whether its flux sums are wide, whether meshes get their light by planes, whether it
-/// runs in pieces.
-type KernelKey = (&'static str, &'static str, bool, bool, bool, bool);
-
-/// Fragment entry point, and whether the farthest fragment stays instead of the nearest.
-type RasterKey = (&'static str, bool);
 
 /// Owns the GPU context and the caches; lives on the GPU thread.
 #[derive(Debug)]
@@ -96,12 +91,10 @@ pub struct Renderer {
     uniforms: Uniforms,
     bind_groups: BindGroups,
     timing: Timing,
-    kernels: BTreeMap<KernelKey, Kernel>,
-    raster_kernels: BTreeMap<RasterKey, RasterKernel>,
-    slice_kernel: Option<RasterKernel>,
+    kernels: KernelCache,
     level_maps: LevelMapCache,
     arena: Option<wgpu::Buffer>,
-    geometry: Option<geometry::Geometry>,
+    geometry: geometry::GeometryCache,
     memory_budget_bytes: u64,
     calibration: Calibration,
     /// Polls since the last frame.
@@ -145,12 +138,10 @@ impl Renderer {
             pool: BufferPool::default(),
             uniforms: Uniforms::default(),
             bind_groups: BindGroups::default(),
-            kernels: BTreeMap::new(),
-            raster_kernels: BTreeMap::new(),
-            slice_kernel: None,
+            kernels: KernelCache::default(),
             level_maps: LevelMapCache::new(arena_bytes),
             arena: None,
-            geometry: None,
+            geometry: geometry::GeometryCache::default(),
             memory_budget_bytes: config.memory_budget_bytes(),
             calibration: config.calibration.clone().unwrap_or_default(),
             idle_polls: 0,
@@ -187,8 +178,9 @@ impl Renderer {
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError> {
         let tuned = self.tuned(resolved, cancel)?;
-        let facts = SceneFacts::with_warnings(tuned.as_ref().map_or(resolved, |(scene, _)| scene))?;
-        let mut plan = plan::plan_scene(&facts, Wanted::Frame, self)?;
+        let facts =
+            methods::facts_with_warnings(tuned.as_ref().map_or(resolved, |(scene, _)| scene))?;
+        let mut plan = plan::plan_scene(&facts, Wanted::Frame, self)?.report;
         plan.chosen = tuned.map(|(_, chosen)| chosen);
         Ok(plan)
     }
@@ -232,12 +224,16 @@ impl Renderer {
         let tuned = self.tuned(resolved, cancel)?;
         let asked = resolved;
         let resolved = tuned.as_ref().map_or(asked, |(scene, _)| scene);
-        let facts = SceneFacts::with_warnings(resolved)?;
+        let facts = methods::facts_with_warnings(resolved)?;
         let plan = plan::plan_scene(&facts, Wanted::Frame, self)?;
         let plan_ms = ms_since(started);
         let cache_before = self.level_maps.stats();
         let ran = Instant::now();
-        let run = self.run(resolved, &facts, Wanted::Frame, &plan, cancel)?;
+        let run = self.run(resolved, &facts, &plan, cancel)?;
+        let builds_level_maps: Vec<&str> = (plan.graph.of(Scope::LevelMap).iter())
+            .map(|pass| pass.name)
+            .collect();
+        let plan = plan.report;
         // Some of the work is done while more is recorded, so that it takes longer than anybody waits.
         let gpu_times = self.timing.collect(&self.gpu, ms_since(ran))?;
         let mut stats = Stats {
@@ -250,7 +246,7 @@ impl Renderer {
                 .map(|p| PassStats {
                     name: p.name.clone(),
                     reason: p.reason.clone(),
-                    runs: if builds_level_maps(&p.name) {
+                    runs: if builds_level_maps.contains(&p.name.as_str()) {
                         run.level_maps_built
                     } else {
                         p.runs
@@ -303,8 +299,7 @@ impl Renderer {
         &mut self,
         resolved: &ResolvedScene,
         facts: &SceneFacts,
-        wanted: Wanted,
-        plan: &Plan,
+        plan: &FramePlan,
         cancel: &CancellationToken,
     ) -> Result<RunResult, RenderError> {
         self.check_budget(plan)?;
@@ -312,23 +307,33 @@ impl Renderer {
             .level_maps
             .reserve(&plan::level_maps(facts))
             .map_err(|error| self.level_maps_over_budget(error))?;
-        let free_budget_bytes = self.memory_budget_bytes.saturating_sub(plan.peak_bytes);
+        let peak_bytes = plan.report.peak_bytes;
+        let free_budget_bytes = self.memory_budget_bytes.saturating_sub(peak_bytes);
         self.bind_groups.begin_frame();
-        if self.pool.begin_frame(free_budget_bytes) {
+        let needs_geometry = plan.graph.slot(&GEOMETRY).is_some();
+        let meshes = needs_geometry.then_some(resolved.meshes.as_slice());
+        let (kept_bytes, dropped) = self.geometry.begin_frame(meshes, free_budget_bytes);
+        if self.pool.begin_frame(free_budget_bytes - kept_bytes) || dropped {
             self.bind_groups.clear();
         }
         self.idle_polls = 0;
         self.uniforms.begin_frame();
         self.timing.begin_frame();
         self.cutting.begin_frame(cancel);
-        let result = self.execute(resolved, facts, wanted, plan, &missing, cancel);
+        let job = executor::Job {
+            facts,
+            plan,
+            missing: &missing,
+            cancel,
+        };
+        let result = self.execute(resolved, job);
         // Maps that are whole stay, also those of a frame that was cancelled after them.
         self.level_maps.forget_unbuilt();
         if let Err(RenderError::Gpu(_)) = &result {
             // Which buffers the device failed on is not known, so nothing that would outlive the frame is trusted.
             self.level_maps.clear();
             self.arena = None;
-            self.geometry = None;
+            self.geometry.clear();
             self.drop_buffers();
             self.gpu.forget_errors();
         }
@@ -351,7 +356,7 @@ impl Renderer {
     /// Frees what is cached for a mesh.
     pub fn forget_mesh(&mut self, id: &str) {
         self.level_maps.forget_mesh(id);
-        self.geometry = None;
+        self.geometry.forget_mesh(id);
         self.bind_groups.clear();
     }
 
@@ -365,6 +370,16 @@ impl Renderer {
     /// The level-map cache since the start (hits, misses, evictions) and now (entries, bytes).
     pub fn level_map_cache(&self) -> CacheStats {
         self.level_maps.stats()
+    }
+
+    /// Kernels that were compiled since the start.
+    pub fn kernels_compiled(&self) -> usize {
+        self.kernels.compiled()
+    }
+
+    /// Bytes of meshes that were uploaded since the start.
+    pub fn geometry_uploaded_bytes(&self) -> u64 {
+        self.geometry.uploaded_bytes()
     }
 
     /// How often since the start a light was followed again because its narrow flux sums had wrapped.
@@ -413,7 +428,7 @@ impl Renderer {
     pub fn resident_bytes(&self) -> u64 {
         self.pool.free_bytes()
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
-            + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes)
+            + self.geometry.bytes()
     }
 
     /// To be called now and then when there is nothing to do: lets the driver free what is no longer used.
@@ -429,25 +444,26 @@ impl Renderer {
         self.gpu.check()
     }
 
-    fn check_budget(&self, plan: &Plan) -> Result<(), RenderError> {
-        if plan.peak_bytes > self.memory_budget_bytes {
+    fn check_budget(&self, plan: &FramePlan) -> Result<(), RenderError> {
+        let peak_bytes = plan.report.peak_bytes;
+        if peak_bytes > self.memory_budget_bytes {
             return Err(RenderError::OverBudget {
                 what: "the frame at its peak (CAUSTICA_MEMORY_BUDGET_MIB)".to_owned(),
-                needed_bytes: plan.peak_bytes,
+                needed_bytes: peak_bytes,
                 budget_bytes: self.memory_budget_bytes,
             });
         }
         let limit = bindable_bytes(&self.gpu);
-        for slot in &plan.slots {
-            // Slices are textures, each by itself small.
-            if slot.bytes > limit && slot.name != slot_name(Slot::Slices) {
+        let buffers = plan.graph.slots.iter().filter(|s| s.slot.is_buffer());
+        for planned in buffers {
+            if planned.bytes > limit {
+                let name = planned.slot.name;
                 return Err(RenderError::OverBudget {
                     what: format!(
-                        "buffer `{}` (the device's limit for one binding{})",
-                        slot.name,
-                        what_helps(plan, &slot.name)
+                        "buffer `{name}` (the device's limit for one binding{})",
+                        what_helps(plan, name)
                     ),
-                    needed_bytes: slot.bytes,
+                    needed_bytes: planned.bytes,
                     budget_bytes: limit,
                 });
             }
@@ -457,9 +473,9 @@ impl Renderer {
 }
 
 /// What would make a buffer smaller, where it holds maps of many objects.
-fn what_helps(plan: &Plan, slot: &str) -> &'static str {
+fn what_helps(plan: &FramePlan, slot: &str) -> &'static str {
     let holds_maps = ["flux", "irradiance"].contains(&slot);
-    let has_objects = plan.passes.iter().any(|pass| pass.name == "split");
+    let has_objects = plan.graph.slot(&GEOMETRY).is_some();
     if holds_maps && has_objects {
         "; quality.level_of_detail gives small and far objects smaller maps, fewer quality.level_map_texels or quality.layers all of them"
     } else {
@@ -496,12 +512,6 @@ struct RunResult {
     /// More than planned where maps that were cached had to make way and come back.
     level_maps_built: u32,
     allocated_bytes: Option<u64>,
-}
-
-/// Whether a pass runs once per level map that is built.
-fn builds_level_maps(pass: &str) -> bool {
-    let found = passes::ALL.into_iter().find(|desc| desc.name == pass);
-    found.is_some_and(|desc| desc.repeat == Repeat::LevelMap)
 }
 
 /// The largest buffer that shaders can bind whole, a multiple of 16 bytes.
@@ -557,8 +567,9 @@ fn exposure(facts: &SceneFacts, resolved: &ResolvedScene) -> ExposureStats {
 }
 
 fn dump_shaders(sources: &ShaderSources, folder: &std::path::Path) -> Result<(), GpuError> {
-    for path in sources.paths().filter(|path| path.starts_with("passes/")) {
-        let target = folder.join(path.trim_start_matches("passes/"));
+    let is_pass = |path: &&str| path.starts_with("stages/") || path.starts_with("methods/");
+    for path in sources.paths().filter(is_pass) {
+        let target = folder.join(path.rsplit('/').next().unwrap_or(path));
         std::fs::create_dir_all(folder)
             .and_then(|()| std::fs::write(&target, sources.assemble(path).unwrap_or_default()))
             .map_err(|error| GpuError::Shader {
@@ -567,9 +578,4 @@ fn dump_shaders(sources: &ShaderSources, folder: &std::path::Path) -> Result<(),
             })?;
     }
     Ok(())
-}
-
-/// The name under which a slot is bound and held.
-fn slot_name(slot: Slot) -> &'static str {
-    slot.info().name
 }

@@ -4,12 +4,12 @@ use std::time::Instant;
 
 use tokio_util::sync::CancellationToken;
 
-use super::buffers::FrameBuffers;
+use super::buffers::FrameSlots;
 use super::{RenderError, Renderer, ms_since};
 use crate::gpu::pieces::{Piece, next_size};
 use crate::gpu::readback;
-use crate::passes::desc::{Groups, Step, Work};
-use crate::passes::slot::Slot;
+use crate::stages::sums::FLUX;
+use crate::stages::{Groups, Slot, Step, Work};
 
 /// Workgroups that run in one go, and first piece of a larger dispatch: about what the largest GPUs hold at once (132 multiprocessors with 32
 /// each), and as many as the vertices of 512 water cells need.
@@ -20,13 +20,13 @@ const FIRST_QUEUE_GROUPS: u64 = 256;
 /// knows, and asking costs a small frame more than it could save.
 const SHORT_WORDS: u64 = 1 << 22;
 
-fn words(slot: Slot, buffers: &FrameBuffers) -> u64 {
-    buffers.get(slot.info().name).size() / 4
+fn words(slot: &Slot, slots: &FrameSlots) -> u64 {
+    slots.buffer(slot).1 / 4
 }
 
 /// Whether a queue is emptied in one go.
-fn is_short(queue: Slot, buffers: &FrameBuffers) -> bool {
-    words(queue, buffers).max(words(Slot::Flux, buffers)) <= SHORT_WORDS
+fn is_short(queue: &Slot, slots: &FrameSlots) -> bool {
+    words(queue, slots).max(words(&FLUX, slots)) <= SHORT_WORDS
 }
 
 /// How dispatches are cut, and what came of it.
@@ -56,22 +56,16 @@ impl Cutting {
 
 impl Renderer {
     /// Whether a step's dispatch may be cut, so that it runs when it is recorded.
-    pub(super) fn may_be_cut(&self, step: &Step, buffers: &FrameBuffers) -> bool {
-        let groups = match step.work {
-            Work::Compute(groups) => groups,
-            Work::StoreLayer { groups, .. } | Work::OverSlice { groups, .. } => {
-                Groups::Direct(groups)
-            }
-            Work::DrawSlice { .. } | Work::DrawLevelMap { .. } => return false,
+    pub(super) fn may_be_cut(&self, step: &Step, slots: &FrameSlots) -> bool {
+        let Work::Compute(groups) = step.work else {
+            return false;
         };
         match groups {
             Groups::Direct(all) => {
                 let most = self.cutting.most_groups.unwrap_or(FIRST_GROUPS);
                 all.map(u64::from).iter().product::<u64>() > most
             }
-            Groups::Queue(slot) | Groups::QueueAt(slot, _) => {
-                self.cutting.most_groups.is_some() || !is_short(slot, buffers)
-            }
+            Groups::Queue(slot, _) => self.cutting.most_groups.is_some() || !is_short(slot, slots),
         }
     }
 
@@ -82,20 +76,20 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         pass: &'static str,
         groups: Groups,
-        buffers: &FrameBuffers,
+        slots: &FrameSlots,
     ) -> Result<Option<([u32; 3], u64)>, RenderError> {
         let asked = self.cutting.most_groups;
         let (all, first) = match groups {
             Groups::Direct(all) => (all, FIRST_GROUPS),
-            Groups::Queue(slot) | Groups::QueueAt(slot, _) => {
-                if asked.is_none() && is_short(slot, buffers) {
+            Groups::Queue(slot, _) => {
+                if asked.is_none() && is_short(slot, slots) {
                     return Ok(None);
                 }
                 self.submit_now(encoder, pass)?;
-                let read: Vec<u32> = readback::read(&self.gpu, &buffers.indirect, 12)?;
+                let read: Vec<u32> = readback::read(&self.gpu, &slots.indirect, 12)?;
                 let all = <[u32; 3]>::try_from(read.as_slice()).unwrap_or_default();
                 // As much to do as the full number has on the largest maps that are emptied in one go.
-                let larger = words(Slot::Flux, buffers).div_ceil(SHORT_WORDS).max(1);
+                let larger = words(&FLUX, slots).div_ceil(SHORT_WORDS).max(1);
                 (all, (FIRST_QUEUE_GROUPS / larger).max(1))
             }
         };

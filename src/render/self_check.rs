@@ -220,8 +220,14 @@ fn run_twin(
     gpu.queue
         .write_buffer(&source, 0, bytemuck::cast_slice(&arguments));
     let bound = kernel.bind(gpu, &mut BindGroups::default(), |name| match name {
-        "arguments" => Some(Binding::Buffer(&source)),
-        "results" => Some(Binding::Buffer(&target)),
+        "arguments" => Some(Binding::Buffer {
+            buffer: &source,
+            bytes: source.size(),
+        }),
+        "results" => Some(Binding::Buffer {
+            buffer: &target,
+            bytes: target.size(),
+        }),
         _ => None,
     })?;
     let mut encoder = gpu

@@ -3,7 +3,7 @@
 use tokio_util::sync::CancellationToken;
 
 use super::{RenderError, Renderer};
-use crate::facts::SceneFacts;
+use crate::methods;
 use crate::plan::{self, Wanted, WarmCache};
 use crate::scene::ResolvedScene;
 use crate::stats::{ChosenDials, Warning};
@@ -115,7 +115,7 @@ impl Renderer {
             let middle = low + (high - low) / 2;
             let mut rung = with_cells(resolved, middle);
             rung.scene.quality.estimate_error = true;
-            let facts = SceneFacts::of(&rung)?;
+            let facts = methods::facts(&rung)?;
             let level_maps: u64 = plan::level_maps(&facts).iter().map(|k| k.bytes()).sum();
             let fits = level_maps <= self.level_maps.stats().budget_bytes;
             match self.check_budget(&plan::plan_scene(&facts, Wanted::Frame, self)?) {
@@ -130,7 +130,7 @@ impl Renderer {
 
     /// What a warm frame with so many cells will take, ms.
     fn predicted_ms(&self, resolved: &ResolvedScene, cells: u32) -> Result<f64, RenderError> {
-        let facts = SceneFacts::of(&with_cells(resolved, cells))?;
+        let facts = methods::facts(&with_cells(resolved, cells))?;
         let plan = plan::plan_scene(&facts, Wanted::Frame, &WarmCache)?;
         Ok(cost::predicted_ms(
             &plan,
@@ -149,9 +149,9 @@ impl Renderer {
     ) -> Result<Option<f64>, RenderError> {
         let mut rung = with_cells(resolved, cells);
         rung.scene.quality.estimate_error = true;
-        let facts = SceneFacts::of(&rung)?;
+        let facts = methods::facts(&rung)?;
         let plan = plan::plan_scene(&facts, Wanted::Estimate, self)?;
-        let run = self.run(&rung, &facts, Wanted::Estimate, &plan, cancel)?;
+        let run = self.run(&rung, &facts, &plan, cancel)?;
         Ok(run.accuracy.and_then(|accuracy| accuracy.estimated_error))
     }
 }

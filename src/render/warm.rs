@@ -9,6 +9,7 @@ use crate::cache::{WarmUp, WarmedMap};
 use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
 use crate::mesh::Mesh;
+use crate::methods;
 use crate::plan::{self, Cached as _, Wanted};
 
 impl Renderer {
@@ -27,7 +28,7 @@ impl Renderer {
         self.gpu.tidy();
         self.gpu.check()?;
         let resolved = wanted.scene_of(mesh)?;
-        let facts = SceneFacts::of(&resolved)?;
+        let facts = methods::facts(&resolved)?;
         let warmed: Vec<WarmedMap> = keys_by_sun(&facts)
             .zip(&wanted.suns)
             .map(|(key, sun)| WarmedMap {
@@ -40,7 +41,7 @@ impl Renderer {
             })
             .collect();
         let plan = plan::plan_scene(&facts, Wanted::LevelMaps, self)?;
-        self.run(&resolved, &facts, Wanted::LevelMaps, &plan, cancel)?;
+        self.run(&resolved, &facts, &plan, cancel)?;
         Ok(warmed)
     }
 }

@@ -95,14 +95,13 @@ impl Default for Quality {
 }
 
 impl Quality {
-    /// Whether light reaches meshes by planes, of either kind, instead of by hits.
-    pub fn has_planes(&self) -> bool {
-        self.is_volumetric() || self.placement == Placement::Planes
-    }
-
-    /// Whether every plane has an image of its own.
-    pub fn is_volumetric(&self) -> bool {
-        self.method == Method::Volumetric
+    /// Name of the method.
+    pub fn method_name(&self) -> &'static str {
+        match (self.method, self.placement) {
+            (Method::Volumetric, _) => "volumetric",
+            (Method::LevelMap, Placement::Planes) => "planes",
+            (Method::LevelMap, Placement::Hit) => "level_map",
+        }
     }
 }
 

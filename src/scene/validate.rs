@@ -212,14 +212,6 @@ fn quality(findings: &mut Findings, quality: &Quality) {
     findings.integer::<ranges::SplitLevels>("/quality/split_levels", quality.split_levels);
     findings.integer::<ranges::PixelSamples>("/quality/pixel_samples", quality.pixel_samples);
     findings.integer::<ranges::Planes>("/quality/planes", quality.planes);
-    let chosen = quality.target_error.is_some() || quality.time_budget_ms.is_some();
-    if chosen && quality.has_planes() {
-        findings.invalid(
-            "/quality/placement",
-            "target_error and time_budget_ms choose the dials of hits, not of planes",
-            "method `level_map` with placement `hit`, or dials of one's own",
-        );
-    }
     if let Some(target) = quality.target_error {
         findings.number("/quality/target_error", target, &ranges::TARGET_ERROR);
     }

@@ -6,10 +6,9 @@ use crate::accuracy::LinearImage;
 use crate::accuracy::display::display_linear;
 use crate::accuracy::luv::luv_distance;
 use crate::accuracy::metrics::{MetricError, relative_l1};
-use crate::facts::SceneFacts;
 use crate::frame::Frame;
 use crate::lab::study::study::SpreadMs;
-use crate::passes::Slot;
+use crate::methods::volumetric::slice_deposit::{SLICE_DEPTH, SLICES};
 use crate::reference::{ReferenceError, Truth};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::Stats;
@@ -168,7 +167,7 @@ fn plane_point(
         )));
     };
     let white_w_m2 = std::f64::consts::PI
-        * SceneFacts::of(base)
+        * crate::methods::facts(base)
             .map_err(|error| refused(&error))?
             .lights
             .white_radiance;
@@ -306,12 +305,12 @@ fn memory_example() -> Result<MemoryExample, ExperimentError> {
     const OBJECTS: u64 = 100;
     const PLANES: u32 = 100;
     let scene = Way::Volumetric(PLANES).of(&scene("box", 2, 512)?);
-    let facts = SceneFacts::of(&scene).map_err(|error| refused(&error))?;
+    let facts = crate::methods::facts(&scene).map_err(|error| refused(&error))?;
     let level_map = crate::plan::level_maps(&facts)
         .first()
         .map_or(0, |key| key.bytes());
     Ok(MemoryExample {
         level_maps_bytes: OBJECTS * level_map,
-        slices_bytes: OBJECTS * Slot::Slices.bytes(&facts),
+        slices_bytes: OBJECTS * (SLICES.bytes(&facts) + SLICE_DEPTH.bytes(&facts)),
     })
 }

@@ -5,7 +5,6 @@ use serde_json::{Value, json};
 use super::case::Family::Fold;
 use super::case::{Case, Failure};
 use super::truths::{flat_error, largest_relative, pool, reference_error, sun, waves, with};
-use crate::facts::SceneFacts;
 use crate::scene::ResolvedScene;
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
@@ -131,7 +130,7 @@ fn on_corners() -> Value {
 
 /// Whether that is so: the margin of the window is not for this case to decide.
 fn is_on_corners(resolved: &ResolvedScene) -> Result<bool, Failure> {
-    let facts = SceneFacts::of(resolved)?;
+    let facts = crate::methods::facts(resolved)?;
     let (Some(light), Some(map)) = (facts.lights.beam_sets.first(), facts.receivers.floor_map)
     else {
         return Ok(false);

@@ -9,7 +9,6 @@ use super::truths::{
     flat_error, largest_relative, largest_to_mean, pool, reference_error, sun, waves, with, worst,
 };
 use super::unfollowed::{flux_below_floor_w, flux_leaving_again_w, flux_turned_away_w};
-use crate::facts::SceneFacts;
 use crate::render::RenderError;
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
@@ -62,7 +61,7 @@ pub(super) const CASES: &[Case] = &[
             for (slope, elevation_deg) in [(1.0, 90.0), (5.0, 90.0), (20.0, 90.0), (3.0, 40.0)] {
                 let scene = with(steep(slope), &[("/lights/0", sun(elevation_deg, 75.0))]);
                 let resolved = b.scene(scene)?;
-                let facts = SceneFacts::of(&resolved).map_err(RenderError::from)?;
+                let facts = crate::methods::facts(&resolved).map_err(RenderError::from)?;
                 let due_w = flux_leaving_again_w(&facts);
                 let frame = b.render_resolved(&resolved)?;
                 let told_w = told_w(&frame, "light_leaves_water_again");
@@ -78,7 +77,7 @@ pub(super) const CASES: &[Case] = &[
         0.01,
         |b| {
             let resolved = b.scene(with(steep(2.0), &[("/lights/0", sun(30.0, 20.0))]))?;
-            let facts = SceneFacts::of(&resolved).map_err(RenderError::from)?;
+            let facts = crate::methods::facts(&resolved).map_err(RenderError::from)?;
             let due_w = flux_turned_away_w(&facts);
             let frame = b.render_resolved(&resolved)?;
             Ok((told_w(&frame, "waves_shade_waves") / due_w - 1.0).abs())
@@ -91,7 +90,7 @@ pub(super) const CASES: &[Case] = &[
         0.02,
         |b| {
             let resolved = b.scene(with(steep(0.5), &[("/floor/depth_m", json!(0.05))]))?;
-            let facts = SceneFacts::of(&resolved).map_err(RenderError::from)?;
+            let facts = crate::methods::facts(&resolved).map_err(RenderError::from)?;
             let due_w = flux_below_floor_w(&facts);
             let frame = b.render_resolved(&resolved)?;
             let told_w = told_w(&frame, "waves_bare_floor");

@@ -12,7 +12,6 @@ use super::study::{
 use crate::accuracy::LinearImage;
 use crate::accuracy::metrics::MetricError;
 use crate::config::Limits;
-use crate::facts::SceneFacts;
 use crate::frame::Frame;
 use crate::reference::{ReferenceError, Truth, TruthKind, shadow_edge};
 use crate::scene::{Issue, LayerName, Output, ResolvedScene, SceneError};
@@ -134,7 +133,7 @@ pub fn run_study<E: std::error::Error>(
             rgb: truth.irradiance.clone(),
         },
         points: Vec::new(),
-        white_w_m2: std::f64::consts::PI * SceneFacts::of(resolved)?.lights.white_radiance,
+        white_w_m2: std::f64::consts::PI * crate::methods::facts(resolved)?.lights.white_radiance,
     };
     let mut scenes = scenes.into_iter();
     let mut done = 0;

@@ -1,0 +1,292 @@
+//! The planner: a list of passes, what is awaited and what is there already become the shortest list of passes, with a reason for
+//! each that is in or out, and the memory they take.
+//!
+//! A pure function without GPU. The list is walked backwards from what is awaited; a pass stays if something awaited is written by it
+//! and it is wanted. What is kept from before counts as there, so a cache hit needs no code of its own.
+
+use std::collections::BTreeSet;
+
+use super::pass::PassDesc;
+use super::scope::{Program, Scope};
+use super::slot::{Origin, SlotDesc};
+
+/// Passes and their memory, in the order they run.
+pub struct Planned<P: Program> {
+    /// Passes that run, with the reason for each.
+    pub passes: Vec<(&'static PassDesc<P>, String)>,
+    /// Passes that do not, with the reason for each.
+    pub absent: Vec<(&'static PassDesc<P>, String)>,
+    /// What they share, in the order of the first use.
+    pub slots: Vec<PlannedSlot<P>>,
+    /// Bytes of the buffers that the slots share. No two slots of one are alive at the same time.
+    pub buffers: Vec<u64>,
+    /// Most bytes of textures that are alive at once.
+    pub texture_bytes: u64,
+}
+
+/// Where a slot lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Allocation {
+    /// In the buffer of this number.
+    Buffer(usize),
+    /// In textures of its own.
+    Textures,
+    /// Kept by a cache.
+    Kept,
+}
+
+/// A slot that is held.
+pub struct PlannedSlot<P: Program> {
+    /// The slot.
+    pub slot: &'static SlotDesc<P>,
+    /// Its size.
+    pub bytes: u64,
+    /// Where it lies.
+    pub allocation: Allocation,
+    /// First and last phase in which it lives.
+    pub life: [Phase; 2],
+}
+
+/// A part of a frame. Slots that live in different phases share memory; within a phase passes run in loops, so all its slots live
+/// through it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Phase {
+    /// What is done once, and level maps.
+    Preparation,
+    /// Beam sets, finely and coarsely, and the estimate of the error.
+    Light,
+    /// Bands of the picture.
+    Picture,
+}
+
+impl Phase {
+    /// The phase of a scope.
+    pub fn of(scope: Scope) -> Self {
+        match scope {
+            Scope::Frame | Scope::LevelMap => Self::Preparation,
+            Scope::BeamSet | Scope::FineBeamSet | Scope::CoarseBeamSet | Scope::Estimate => {
+                Self::Light
+            }
+            Scope::Band | Scope::BandBeamSet => Self::Picture,
+        }
+    }
+}
+
+/// Why there is no plan.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// A pass needs what no pass before it writes: a defect of the list.
+    #[error("pass `{pass}` reads `{slot}`, which nothing before it writes")]
+    NothingWrites {
+        /// The pass.
+        pass: &'static str,
+        /// The slot.
+        slot: &'static str,
+    },
+}
+
+impl<P: Program> Planned<P> {
+    /// Whether a pass runs.
+    pub fn runs(&self, name: &str) -> bool {
+        self.passes.iter().any(|(pass, _)| pass.name == name)
+    }
+
+    /// The passes of a scope, in order.
+    pub fn of(&self, scope: Scope) -> Vec<&'static PassDesc<P>> {
+        let all = self.passes.iter().map(|(pass, _)| *pass);
+        all.filter(|pass| pass.steps.scope() == scope).collect()
+    }
+
+    /// The largest of the slots that share a buffer; of equal ones the first.
+    pub fn owner(&self, buffer: usize) -> Option<&'static SlotDesc<P>> {
+        let all = self.slots.iter();
+        let own = all.filter(|slot| slot.allocation == Allocation::Buffer(buffer));
+        own.reduce(|a, b| if b.bytes > a.bytes { b } else { a })
+            .map(|planned| planned.slot)
+    }
+
+    /// A slot that is held.
+    pub fn slot(&self, slot: &SlotDesc<P>) -> Option<&PlannedSlot<P>> {
+        self.slots.iter().find(|planned| planned.slot == slot)
+    }
+}
+
+/// Plans.
+///
+/// - `passes`: all that may run, in order;
+/// - `awaited`: slots that hold what is asked for;
+/// - `there`: slots whose content is kept from before;
+/// - `kept_bytes`: size of a slot that a cache keeps.
+///
+/// # Errors
+/// [`PlanError::NothingWrites`].
+pub fn plan<P: Program>(
+    passes: &[&'static PassDesc<P>],
+    facts: &P::Facts,
+    awaited: &BTreeSet<&'static SlotDesc<P>>,
+    there: &BTreeSet<&'static SlotDesc<P>>,
+    kept_bytes: impl Fn(&SlotDesc<P>) -> u64,
+) -> Result<Planned<P>, PlanError> {
+    let mut awaiting = awaited.clone();
+    let (mut kept, mut absent) = (Vec::new(), Vec::new());
+    for pass in passes.iter().copied().rev() {
+        match verdict(pass, facts, &awaiting, there) {
+            Ok(reason) => {
+                awaiting.extend(pass.reads.iter().chain(pass.reads_if_present));
+                kept.push((pass, reason));
+            }
+            Err(reason) => absent.push((pass, reason)),
+        }
+    }
+    kept.reverse();
+    absent.reverse();
+    check_order(&kept, there)?;
+    let mut planned = Planned {
+        slots: held(&kept, facts, kept_bytes),
+        passes: kept,
+        absent,
+        buffers: Vec::new(),
+        texture_bytes: 0,
+    };
+    share_buffers(&mut planned);
+    planned.texture_bytes = [Phase::Preparation, Phase::Light, Phase::Picture]
+        .into_iter()
+        .map(|phase| {
+            let alive = |slot: &&PlannedSlot<P>| {
+                slot.allocation == Allocation::Textures
+                    && slot.life[0] <= phase
+                    && phase <= slot.life[1]
+            };
+            let alive = planned.slots.iter().filter(alive);
+            alive.map(|slot| slot.bytes).sum()
+        })
+        .max()
+        .unwrap_or(0);
+    Ok(planned)
+}
+
+fn verdict<P: Program>(
+    pass: &'static PassDesc<P>,
+    facts: &P::Facts,
+    awaiting: &BTreeSet<&'static SlotDesc<P>>,
+    there: &BTreeSet<&'static SlotDesc<P>>,
+) -> Result<String, String> {
+    let reason = (pass.wanted)(facts)?;
+    let names = |slots: &[&'static SlotDesc<P>]| {
+        let names: Vec<&str> = slots.iter().map(|slot| slot.name).collect();
+        names.join(", ")
+    };
+    let (mut missing, mut kept) = (Vec::new(), Vec::new());
+    for slot in pass.writes {
+        if there.contains(slot) {
+            kept.push(*slot);
+        } else {
+            missing.push(*slot);
+        }
+    }
+    if missing.iter().any(|slot| awaiting.contains(slot)) {
+        return Ok(reason);
+    }
+    if kept.iter().any(|slot| awaiting.contains(slot)) {
+        return Err(format!("what it writes ({}) is kept", names(&kept)));
+    }
+    Err(format!(
+        "nothing in this frame reads what it writes ({})",
+        names(pass.writes)
+    ))
+}
+
+/// Every slot that is read must come from the host, be kept, or be written before.
+fn check_order<P: Program>(
+    kept: &[(&'static PassDesc<P>, String)],
+    there: &BTreeSet<&'static SlotDesc<P>>,
+) -> Result<(), PlanError> {
+    let mut there = there.clone();
+    for (pass, _) in kept {
+        let missing = pass.reads.iter().find(|slot| {
+            let from_host = matches!(slot.origin, Origin::Host | Origin::HostCached);
+            !from_host && !there.contains(*slot)
+        });
+        if let Some(missing) = missing {
+            return Err(PlanError::NothingWrites {
+                pass: pass.name,
+                slot: missing.name,
+            });
+        }
+        there.extend(pass.writes);
+    }
+    Ok(())
+}
+
+/// The slots that passes touch, with their sizes and lives.
+fn held<P: Program>(
+    kept: &[(&'static PassDesc<P>, String)],
+    facts: &P::Facts,
+    kept_bytes: impl Fn(&SlotDesc<P>) -> u64,
+) -> Vec<PlannedSlot<P>> {
+    // Passes that follow a beam set run again for each band where other passes need the set there.
+    let again_in_picture = kept
+        .iter()
+        .any(|(pass, _)| pass.steps.scope() == Scope::BandBeamSet);
+    let mut slots: Vec<PlannedSlot<P>> = Vec::new();
+    for (pass, _) in kept {
+        let scope = pass.steps.scope();
+        let first = Phase::of(scope);
+        let last = if again_in_picture && scope == Scope::BeamSet {
+            Phase::Picture
+        } else {
+            first
+        };
+        for slot in pass.slots() {
+            if let Some(known) = slots.iter_mut().find(|known| known.slot == slot) {
+                known.life = [known.life[0].min(first), known.life[1].max(last)];
+                continue;
+            }
+            let (bytes, allocation) = match slot.origin {
+                Origin::Cached | Origin::HostCached => (kept_bytes(slot), Allocation::Kept),
+                // A binding may not be shorter than one element of its array.
+                _ if slot.is_buffer() => (slot.bytes(facts).max(16), Allocation::Buffer(0)),
+                _ => (slot.bytes(facts), Allocation::Textures),
+            };
+            slots.push(PlannedSlot {
+                slot,
+                bytes,
+                allocation,
+                life: [first, last],
+            });
+        }
+    }
+    for planned in &mut slots {
+        if planned.slot.origin == Origin::Host {
+            // The host fills it before anything runs.
+            planned.life[0] = Phase::Preparation;
+        }
+    }
+    slots
+}
+
+/// Gives every slot that lies in a buffer one that no other slot alive at the same time lies in: the largest first, each into the
+/// first buffer where it fits in time.
+fn share_buffers<P: Program>(planned: &mut Planned<P>) {
+    let mut order: Vec<usize> = (0..planned.slots.len())
+        .filter(|&index| matches!(planned.slots[index].allocation, Allocation::Buffer(_)))
+        .collect();
+    order.sort_by_key(|&index| std::cmp::Reverse(planned.slots[index].bytes));
+    let mut lives: Vec<Vec<[Phase; 2]>> = Vec::new();
+    for index in order {
+        let slot = &mut planned.slots[index];
+        let is_free = |lives: &Vec<[Phase; 2]>| {
+            lives
+                .iter()
+                .all(|life| life[1] < slot.life[0] || slot.life[1] < life[0])
+        };
+        let number = lives.iter().position(is_free).unwrap_or_else(|| {
+            // Those that come later are no larger.
+            lives.push(Vec::new());
+            planned.buffers.push(slot.bytes.next_multiple_of(4));
+            lives.len() - 1
+        });
+        lives[number].push(slot.life);
+        slot.allocation = Allocation::Buffer(number);
+    }
+}

@@ -1,0 +1,42 @@
+//! Level maps (Tipprasert 2006), with light placed where rays hit: each ray is marched into the position map of a mesh until it crosses
+//! the surface, the thesis's stated next step; between the hits go beams with exact texel coverage. The default.
+
+use super::Method;
+use crate::facts::{MethodFacts, Product};
+use crate::stages::{deposit, hits, irradiance, landed, split, unfollowed};
+
+/// See the module.
+pub static METHOD: Method = Method {
+    name: "level_map",
+    summary: "beams end where their rays hit the floor or cross a mesh's level map",
+    paper: "Tipprasert 2006, with its next step (§6.2): light placed on the actual hit",
+    dials: &[
+        "water_cells",
+        "map_texels",
+        "level_map_texels",
+        "layers",
+        "level_of_detail",
+        "split_levels",
+    ],
+    passes: &[
+        &hits::PASS,
+        &deposit::PASS,
+        &split::PASS,
+        &unfollowed::PASS,
+        &landed::PASS,
+        &irradiance::PASS,
+    ],
+    expected_order: 2.0,
+    dials_can_be_chosen: true,
+    facts: |_| MethodFacts {
+        name: METHOD.name,
+        product: Product::ReceiverMaps,
+        conserves_energy: true,
+        lights_meshes_by_hits: true,
+        reference_planes: 0,
+        deposits_per_beam: 1,
+        has_scratch_map: false,
+        leaves_out: crate::facts::method::LeavesOut::default(),
+    },
+    supports: |_| Ok(()),
+};

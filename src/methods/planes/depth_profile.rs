@@ -1,0 +1,54 @@
+//! Depth profile — which planes of an object are used: with smart slicing (Tipprasert 2006, §4.7.2) those whose acceptance interval
+//! holds a texel of the level map, otherwise all; and which of them come near the surface in each tile of the map.
+
+use crate::scene::Slicing;
+use crate::stages::level_map::LEVEL_MAPS;
+use crate::stages::light::Light;
+use crate::stages::queues::MOST_GROUPS;
+use crate::stages::receivers::RECEIVERS;
+use crate::stages::reference_planes::{
+    PLANE_LISTS, PLANE_TILE_TEXELS, Planes, objects_of, plane_uniforms, wanted_for_planes,
+};
+use crate::stages::{Groups, Pass, Step, Steps};
+
+/// Texels of a workgroup, as in the shader.
+pub const TEXELS_PER_GROUP: u32 = 64 * 16;
+
+/// See the module.
+pub static PASS: Pass = Pass {
+    name: "depth_profile",
+    shader: "methods/planes/depth_profile.wgsl",
+    reads: &[&RECEIVERS, &LEVEL_MAPS],
+    reads_if_present: &[],
+    writes: &[&PLANE_LISTS],
+    uniforms: &[("light", Light::LAYOUT), ("planes", Planes::LAYOUT)],
+    wanted: |facts| {
+        wanted_for_planes(facts)?;
+        let planes = facts.method.reference_planes;
+        Ok(match facts.quality.slicing {
+            Slicing::Uniform => format!("all {planes} planes are used"),
+            Slicing::Smart => {
+                format!("of {planes} planes those without a surface near them are left out")
+            }
+        })
+    },
+    steps: Steps::BeamSet(|facts, set| {
+        let mut steps = Vec::new();
+        for (object, texels) in objects_of(facts, set.index) {
+            let mut add = |entry, groups| {
+                let uniforms = plane_uniforms(facts, set, (object, 0));
+                steps.push(Step::compute(entry, Groups::Direct(groups), uniforms));
+            };
+            if facts.quality.slicing == Slicing::Smart {
+                let groups = (texels * texels).div_ceil(TEXELS_PER_GROUP);
+                let columns = groups.min(MOST_GROUPS);
+                add("profile_count", [columns, groups.div_ceil(columns), 1]);
+            }
+            add("profile_compact", [1, 1, 1]);
+            let tiles = (texels / PLANE_TILE_TEXELS).div_ceil(8);
+            add("profile_tiles", [tiles, tiles, 1]);
+        }
+        steps
+    }),
+    work: |_| 0.0,
+};

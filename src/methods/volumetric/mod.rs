@@ -1,0 +1,48 @@
+//! The volumetric baseline (Tipprasert 2006, §5.2.1), what level maps are measured against: every plane of a mesh has an image of its
+//! slice, drawn anew for each frame, which masks a caustics map of all beams. To compare with.
+
+pub mod slice_deposit;
+
+use super::Method;
+use crate::facts::method::LeavesOut;
+use crate::facts::{MethodFacts, Product};
+use crate::stages::{deposit, hits, irradiance, landed, split, unfollowed};
+
+/// See the module.
+pub static METHOD: Method = Method {
+    name: "volumetric",
+    summary: "an image of each plane's slice, drawn anew for every frame, masks the light of all beams",
+    paper: "Tipprasert 2006, §5.2.1",
+    dials: &[
+        "planes",
+        "water_cells",
+        "map_texels",
+        "level_map_texels",
+        "level_of_detail",
+    ],
+    passes: &[
+        &hits::PASS,
+        &deposit::PASS,
+        &split::PASS,
+        &slice_deposit::PASS,
+        &unfollowed::PASS,
+        &landed::PASS,
+        &irradiance::PASS,
+    ],
+    expected_order: 0.0,
+    dials_can_be_chosen: false,
+    facts: |quality| MethodFacts {
+        name: METHOD.name,
+        product: Product::ReceiverMaps,
+        conserves_energy: false,
+        lights_meshes_by_hits: false,
+        reference_planes: quality.planes,
+        deposits_per_beam: quality.planes,
+        has_scratch_map: true,
+        leaves_out: LeavesOut {
+            shadows_on_objects: true,
+            further_layers: true,
+        },
+    },
+    supports: |_| Ok(()),
+};

@@ -1,0 +1,150 @@
+//! Camera hits — what each pixel sees, through true refraction at the water.
+
+use super::gpu_values::{vec2, vec4};
+use super::objects::{GEOMETRY, INSTANCES};
+use super::points::{POINTS, points_of_a_band};
+use super::surface::WAVES;
+use super::{Groups, Pass, Slot, Step, Steps};
+use crate::facts::SceneFacts;
+use crate::gpu_struct;
+use crate::graph::BandRun;
+
+/// What a sample of a pixel whose march along the water ended early adds to its notes (the fourth value of its radiance); one that sees
+/// the floor beside its map adds 1.
+pub const MARCH_UNFINISHED: f32 = 128.0;
+
+gpu_struct! {
+    /// The uniform of `shaders/shared/view.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    pub View = "View" {
+        eye: [f32; 4],
+        right: [f32; 4],
+        up: [f32; 4],
+        forward: [f32; 4],
+        extinction_per_m: [f32; 4],
+        sky_radiance: [f32; 4],
+        floor_albedo: [f32; 4],
+        floor_min_m: [f32; 2],
+        floor_max_m: [f32; 2],
+        floor_y_m: f32,
+        has_floor: u32,
+        width: u32,
+        height: u32,
+        first_row: u32,
+        row_count: u32,
+        orthographic: u32,
+        wave_count: u32,
+        instance_count: u32,
+        light_count: u32,
+        air_light_count: u32,
+        max_height_m: f32,
+        max_slope: f32,
+        ior: f32,
+        sky_transmittance: f32,
+        sky_path_factor: f32,
+        layers: u32,
+        sample_index: u32,
+        sample_offset: [f32; 2],
+    }
+}
+
+/// Distance of what pixels see first.
+pub static VISIBLE_DEPTH: Slot = Slot::buffer(
+    "visible_depth",
+    "distance along the viewing axis to the first surface m per pixel",
+    |facts| 4 * pixels(facts),
+);
+
+/// What pixels see: reflectance, and the path to it.
+pub static VISIBLE_ALBEDO: Slot = Slot::buffer(
+    "visible_albedo",
+    "reflectance and path under water m per pixel",
+    |facts| 16 * pixels(facts),
+);
+
+/// What pixels see: through what.
+pub static VISIBLE_TRANSPORT: Slot = Slot::buffer(
+    "visible_transport",
+    "weights of surface and sky, path of the sky's light m, notes per pixel",
+    |facts| 16 * pixels(facts),
+);
+
+/// See the module.
+pub static PASS: Pass = Pass {
+    name: "camera_hits",
+    shader: "stages/camera_hits.wgsl",
+    reads: &[&WAVES, &GEOMETRY, &INSTANCES],
+    reads_if_present: &[],
+    writes: &[&POINTS, &VISIBLE_DEPTH, &VISIBLE_ALBEDO, &VISIBLE_TRANSPORT],
+    uniforms: &[("view", View::LAYOUT)],
+    wanted: wanted_for_camera,
+    steps: Steps::Band(|facts, band| pixel_step("camera_hits_main", facts, band)),
+    work: |facts| pixels(facts) as f64 * (1.0 + facts.water.surface.components.len() as f64),
+};
+
+/// Pixels of the largest band of a view; 0 without a camera.
+pub(super) fn pixels(facts: &SceneFacts) -> u64 {
+    facts.output.camera.map_or(0, |_| points_of_a_band(facts))
+}
+
+/// Passes that follow a picture are in when there is one.
+pub(super) fn wanted_for_camera(facts: &SceneFacts) -> Result<String, String> {
+    match &facts.output.camera {
+        Some(camera) => Ok(format!(
+            "a view of {} × {} pixels",
+            camera.width, camera.height
+        )),
+        None => Err("the output is an irradiance map, seen by no camera".to_owned()),
+    }
+}
+
+/// One invocation per pixel of a band.
+pub(super) fn pixel_step(entry: &'static str, facts: &SceneFacts, band: BandRun) -> Vec<Step> {
+    let Some(camera) = &facts.output.camera else {
+        return Vec::new();
+    };
+    vec![Step::compute(
+        entry,
+        Groups::Direct([camera.width.div_ceil(8), band.rows.div_ceil(8), 1]),
+        vec![("view", view_uniform(facts, band))],
+    )]
+}
+
+/// The uniform of a band.
+fn view_uniform(facts: &SceneFacts, band: BandRun) -> Vec<u8> {
+    let Some(camera) = &facts.output.camera else {
+        return Vec::new();
+    };
+    let floor = facts.receivers.floor.as_ref();
+    let view = View {
+        eye: vec4(camera.eye, 0.0),
+        right: vec4(camera.right, 0.0),
+        up: vec4(camera.up, 0.0),
+        forward: vec4(camera.forward, 0.0),
+        extinction_per_m: vec4(facts.water.extinction_per_m, 0.0),
+        sky_radiance: vec4(facts.lights.sky.radiance, 0.0),
+        floor_albedo: floor.map_or([0.0; 4], |f| vec4(f.albedo, 0.0)),
+        floor_min_m: floor.map_or([0.0; 2], |f| vec2(f.rect.min)),
+        floor_max_m: floor.map_or([0.0; 2], |f| vec2(f.rect.max)),
+        floor_y_m: floor.map_or(0.0, |f| f.y_m as f32),
+        has_floor: u32::from(floor.is_some()),
+        width: camera.width,
+        height: camera.height,
+        first_row: band.first_row,
+        row_count: band.rows,
+        orthographic: u32::from(camera.orthographic),
+        wave_count: facts.water.surface.components.len() as u32,
+        instance_count: facts.receivers.objects.len() as u32,
+        light_count: facts.lights.lit.len() as u32,
+        air_light_count: facts.lights.in_air.len() as u32,
+        max_height_m: facts.water.surface.max_height_m() as f32,
+        max_slope: facts.water.surface.max_slope() as f32,
+        ior: facts.water.ior as f32,
+        sky_transmittance: facts.lights.sky.transmittance as f32,
+        sky_path_factor: facts.lights.sky.path_factor as f32,
+        layers: facts.quality.layers,
+        sample_index: band.sample_index,
+        sample_offset: band.offset.map(|o| o as f32),
+    };
+    bytemuck::bytes_of(&view).to_vec()
+}

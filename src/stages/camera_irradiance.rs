@@ -1,0 +1,71 @@
+//! Camera irradiance — the light on what each pixel sees: from the receivers' maps under water, from the lights above it.
+
+use super::camera_hits::{View, pixel_step, pixels, wanted_for_camera};
+use super::gpu_values::vec4;
+use super::irradiance::IRRADIANCE;
+use super::level_map::LEVEL_MAPS;
+use super::objects::{GEOMETRY, INSTANCES};
+use super::points::{POINT_IRRADIANCE, POINTS};
+use super::receivers::ALL_RECEIVERS;
+use super::{Pass, Steps};
+use crate::facts::source::Source;
+use crate::facts::{MOST_LIGHTS, Product, SceneFacts};
+use crate::gpu_struct;
+
+gpu_struct! {
+    /// A light in the air of `shaders/stages/camera_irradiance.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    pub AirLight = "AirLight" {
+        source: [f32; 4],
+        power: [f32; 4],
+    }
+}
+
+/// See the module.
+pub static PASS: Pass = Pass {
+    name: "camera_irradiance",
+    shader: "stages/camera_irradiance.wgsl",
+    reads: &[&POINTS, &GEOMETRY, &INSTANCES, &ALL_RECEIVERS],
+    reads_if_present: &[&IRRADIANCE, &LEVEL_MAPS],
+    writes: &[&POINT_IRRADIANCE],
+    uniforms: &[("view", View::LAYOUT), ("air_lights", AirLight::LAYOUT)],
+    wanted: |facts| {
+        wanted_for_camera(facts)?;
+        if facts.method.product == Product::PointIrradiance {
+            return Err(format!(
+                "method {} finds the light at the points itself",
+                facts.method.name
+            ));
+        }
+        if facts.output.wants_irradiance() {
+            Ok("the picture needs the light on what it shows".to_owned())
+        } else {
+            Err("neither radiance nor irradiance is among the layers".to_owned())
+        }
+    },
+    steps: Steps::Band(|facts, band| {
+        let mut steps = pixel_step("camera_irradiance_main", facts, band);
+        for step in &mut steps {
+            step.uniforms.push(("air_lights", air_lights(facts)));
+        }
+        steps
+    }),
+    work: |facts| pixels(facts) as f64,
+};
+
+fn air_lights(facts: &SceneFacts) -> Vec<u8> {
+    // No more than that pass the facts.
+    let mut all = [AirLight::default(); MOST_LIGHTS];
+    for (slot, light) in all.iter_mut().zip(&facts.lights.in_air) {
+        *slot = AirLight {
+            source: match light.source {
+                Source::Sun { to_light } => vec4(to_light, 0.0),
+                Source::Point { position_m } | Source::Submerged { position_m } => {
+                    vec4(position_m, 1.0)
+                }
+            },
+            power: vec4(light.power, 0.0),
+        };
+    }
+    bytemuck::bytes_of(&all).to_vec()
+}

@@ -1,0 +1,12 @@
+//! Double values as the GPU holds them.
+
+/// A double triple, with a fourth value.
+pub fn vec4(v: impl Into<[f64; 3]>, w: f64) -> [f32; 4] {
+    let [x, y, z] = v.into();
+    [x as f32, y as f32, z as f32, w as f32]
+}
+
+/// A double pair.
+pub fn vec2(v: glam::DVec2) -> [f32; 2] {
+    [v.x as f32, v.y as f32]
+}

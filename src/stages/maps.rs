@@ -1,0 +1,147 @@
+//! Where the irradiance maps of the receivers lie in the arrays that hold them all.
+//!
+//! In the flux sums of a light: the floor's map, then for each wet object its layers, nearest first. In the irradiance array: the
+//! floor's map, to which every light adds, then the objects' maps of the first light, of the second, and so on. Maps that nobody asks
+//! for have no place: what lands there goes straight into the account.
+
+use std::ops::Range;
+
+use crate::facts::{FloorMap, SceneFacts};
+use crate::scene::Receiver;
+
+/// Where a map lies that nobody asks for, as in `shaders/shared/receivers.wgsl`.
+pub const NOWHERE: u32 = u32::MAX;
+
+/// The maps of an object.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct ObjectMaps {
+    /// First texel in the flux sums.
+    first: u64,
+    /// Texels of a layer; of a dry object 0.
+    texels: u64,
+    /// The layers that are asked for.
+    layers: Range<u32>,
+}
+
+/// The maps of a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MapLayout {
+    floor: u64,
+    objects: Vec<ObjectMaps>,
+    /// Texels of all objects under one light.
+    per_light: u64,
+    lights: u64,
+}
+
+impl MapLayout {
+    /// The layout for a scene.
+    pub fn of(facts: &SceneFacts) -> Self {
+        Self::with_floor(facts, facts.receivers.floor_map)
+    }
+
+    /// The layout for a scene with another map of the floor.
+    pub fn with_floor(facts: &SceneFacts, floor_map: Option<FloorMap>) -> Self {
+        let floor = floor_map.map_or(0, |map| u64::from(map.width) * u64::from(map.height));
+        let mut end = floor;
+        let objects = facts
+            .receivers
+            .objects
+            .iter()
+            .enumerate()
+            .map(|(number, object)| {
+                let side = if object.wet {
+                    u64::from(object.map_texels)
+                } else {
+                    0
+                };
+                let maps = ObjectMaps {
+                    first: end,
+                    texels: side * side,
+                    layers: asked_layers(facts, number),
+                };
+                end += maps.layers.len() as u64 * maps.texels;
+                maps
+            })
+            .collect();
+        Self {
+            floor,
+            objects,
+            per_light: end - floor,
+            lights: facts.lights.lit.len() as u64,
+        }
+    }
+
+    /// Texels, behind the flux sums of a light, of the caustics map of one plane: as many as the largest object's map has.
+    pub fn scratch_texels(&self) -> u64 {
+        self.objects
+            .iter()
+            .map(|maps| maps.texels)
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// The first of those.
+    pub fn scratch(&self) -> u32 {
+        narrow(self.flux_texels())
+    }
+
+    /// Texels of the flux sums of one light.
+    pub fn flux_texels(&self) -> u64 {
+        self.floor + self.per_light
+    }
+
+    /// Texels of all objects' maps of one light.
+    pub fn object_texels(&self) -> u64 {
+        self.per_light
+    }
+
+    /// Texels of all irradiance maps.
+    pub fn irradiance_texels(&self) -> u64 {
+        self.floor + self.per_light * self.lights
+    }
+
+    /// Whether a layer of an object is asked for.
+    pub fn holds(&self, object: usize, layer: u32) -> bool {
+        self.objects[object].layers.contains(&layer)
+    }
+
+    /// First texel of a layer of an object in the flux sums; [`NOWHERE`] for one that nobody asks for.
+    pub fn flux_of(&self, object: usize, layer: u32) -> u32 {
+        self.place(object, layer).map_or(NOWHERE, narrow)
+    }
+
+    /// First texel of a layer of an object under light number `light` in the irradiance array; [`NOWHERE`] for one that nobody asks for.
+    pub fn irradiance_of(&self, light: usize, object: usize, layer: u32) -> u32 {
+        let place = self.place(object, layer);
+        place.map_or(NOWHERE, |first| {
+            narrow(first + light as u64 * self.per_light)
+        })
+    }
+
+    fn place(&self, object: usize, layer: u32) -> Option<u64> {
+        let maps = &self.objects[object];
+        let before = layer.wrapping_sub(maps.layers.start);
+        self.holds(object, layer)
+            .then(|| maps.first + u64::from(before) * maps.texels)
+    }
+}
+
+/// Layers of an object that are read by anyone: a camera reads all, an irradiance map is one. Where the method lays light on meshes
+/// itself, it lights all that rays stop at.
+fn asked_layers(facts: &SceneFacts, object: usize) -> Range<u32> {
+    if !facts.method.lights_meshes_by_hits {
+        return 0..facts.quality.layers;
+    }
+    match facts.output.receiver {
+        Some(Receiver::Object(wanted)) if wanted as usize == object => {
+            facts.output.receiver_layer..facts.output.receiver_layer + 1
+        }
+        Some(_) => 0..0,
+        None => 0..facts.quality.layers,
+    }
+}
+
+/// Buffers this long are refused before anything runs.
+fn narrow(texel: u64) -> u32 {
+    u32::try_from(texel).unwrap_or(NOWHERE)
+}

@@ -1,0 +1,87 @@
+//! Passes that several methods share, and what flows between them. Each file holds a pass with its slots and structs; its shader has
+//! the same name in `shaders/stages/`.
+//!
+//! | what | files |
+//! |---|---|
+//! | water and its rays | `surface` (the one to copy), `beams`, `hits`, `unfollowed` |
+//! | level maps | `level_map`, `level_map_pyramid` |
+//! | flux on receivers | `deposit`, `split`, `landed`, `irradiance`; `light`, `receivers`, `maps`, `sums`, `term`, `queues`: what they share |
+//! | what the camera or a map's texels see | `points`: the slot; `camera_hits` and `texel_points` fill it; `camera_irradiance`, `shade` |
+//! | the frame's estimate of its error | `coarse_irradiance`, `estimate` |
+//! | reference planes | `reference_planes`: what methods that slice objects share |
+//!
+//! Bindings are matched by name: a WGSL variable is called like the slot it binds.
+
+pub mod beams;
+pub mod camera_hits;
+pub mod camera_irradiance;
+pub mod coarse_irradiance;
+pub mod deposit;
+pub mod estimate;
+pub mod gpu_values;
+pub mod hits;
+pub mod irradiance;
+pub mod landed;
+pub mod level_map;
+pub mod level_map_pyramid;
+pub mod light;
+pub mod maps;
+pub mod objects;
+pub mod points;
+pub mod queues;
+pub mod receivers;
+pub mod reference_planes;
+pub mod shade;
+pub mod shaders;
+pub mod split;
+pub mod sums;
+pub mod surface;
+pub mod term;
+pub mod texel_points;
+pub mod unfollowed;
+
+use crate::facts::SceneFacts;
+use crate::graph::{self, Program};
+
+/// This program, as the graph sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Caustica;
+
+impl Program for Caustica {
+    type Facts = SceneFacts;
+    type LevelMap = level_map::LevelMapRun;
+}
+
+/// A pass.
+pub type Pass = graph::PassDesc<Caustica>;
+/// A slot.
+pub type Slot = graph::SlotDesc<Caustica>;
+/// The steps of a pass, by scope.
+pub type Steps = graph::Steps<Caustica>;
+/// A dispatch or draw.
+pub type Step = graph::Step<Caustica>;
+/// The workgroups of a dispatch.
+pub type Groups = graph::Groups<Caustica>;
+/// A run of a pass.
+pub type Run<'a> = graph::Run<'a, Caustica>;
+/// What a step does.
+pub type Work = graph::Work<Caustica>;
+
+/// Passes that run before those of the method: the level maps, the water and the rays under it.
+pub static BEFORE_METHOD: [&Pass; 4] = [
+    &level_map::PASS,
+    &level_map_pyramid::PASS,
+    &surface::PASS,
+    &beams::PASS,
+];
+
+/// Passes that run when the method has made its maps: the estimate of the error, and the points of the picture.
+pub static AFTER_MAPS: [&Pass; 4] = [
+    &coarse_irradiance::PASS,
+    &estimate::PASS,
+    &camera_hits::PASS,
+    &texel_points::PASS,
+];
+
+/// Passes that run last, when the light at the points is known or can be looked up.
+pub static PICTURE: [&Pass; 2] = [&camera_irradiance::PASS, &shade::PASS];

@@ -1,0 +1,68 @@
+//! Points: what pixels see, or where the texels of a map lie, so that methods which work per point serve pictures and maps alike.
+//!
+//! `camera_hits` fills them from pixels and `texel_points` from the texels of an irradiance map; both for the rows of a band.
+
+use super::Slot;
+use crate::facts::SceneFacts;
+use crate::gpu_struct;
+
+/// Most bytes per 16 of a pixel that a band of the picture takes.
+pub const BAND_BYTES: u64 = 32 << 20;
+
+gpu_struct! {
+    /// A point of `shaders/shared/points.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    pub Point = "Point" {
+        position_m: [f32; 3],
+        receiver: f32,
+        normal: [f32; 3],
+        footprint_m: f32,
+    }
+}
+
+/// The points of a band.
+pub static POINTS: Slot = Slot {
+    element: Some(Point::LAYOUT),
+    ..Slot::buffer(
+        "points",
+        "position m, receiver, normal and footprint m per pixel or texel",
+        |facts| size_of::<Point>() as u64 * points_of_a_band(facts),
+    )
+};
+
+/// Light on the points of a band.
+pub static POINT_IRRADIANCE: Slot =
+    Slot::buffer("point_irradiance", "linear RGB per point, W/m²", |facts| {
+        16 * points_of_a_band(facts)
+    });
+
+/// Columns and rows of what is looked at: the picture's pixels, or the texels of the map that is asked for.
+pub fn size(facts: &SceneFacts) -> Option<[u32; 2]> {
+    if let Some(camera) = &facts.output.camera {
+        return Some([camera.width, camera.height]);
+    }
+    match facts.output.receiver? {
+        crate::scene::Receiver::Floor(_) => {
+            facts.receivers.floor_map.map(|map| [map.width, map.height])
+        }
+        crate::scene::Receiver::Object(index) => {
+            let object = facts.receivers.objects.get(index as usize)?;
+            object.wet.then_some([object.map_texels; 2])
+        }
+    }
+}
+
+/// Points of the largest band.
+pub(super) fn points_of_a_band(facts: &SceneFacts) -> u64 {
+    size(facts).map_or(0, |[width, height]| {
+        u64::from(width) * u64::from(band_rows(width, height))
+    })
+}
+
+/// Rows of a picture or map that are made at once.
+pub fn band_rows(width: u32, height: u32) -> u32 {
+    let rows = BAND_BYTES / (16 * u64::from(width.max(1)));
+    u32::try_from(rows)
+        .unwrap_or(u32::MAX)
+        .clamp(1, height.max(1))
+}

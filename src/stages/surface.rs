@@ -1,0 +1,134 @@
+//! Surface — height and slope of the water at the vertices of a beam set's window. The pass to copy.
+
+use super::light::{Light, light_uniform};
+use super::queues::in_columns;
+use super::{Pass, Slot, Step, Steps};
+use crate::facts::SceneFacts;
+use crate::facts::source::Source;
+use crate::gpu_struct;
+use crate::graph::{BeamSetRun, Origin};
+
+gpu_struct! {
+    /// A wave component of `shaders/shared/water_surface.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    pub Wave = "Wave" {
+        amplitude_m: f32,
+        frequency_x_per_m: f32,
+        frequency_z_per_m: f32,
+        phase_turns: f32,
+    }
+}
+
+/// Wave components.
+pub static WAVES: Slot = Slot {
+    origin: Origin::Host,
+    element: Some(Wave::LAYOUT),
+    ..Slot::buffer(
+        "waves",
+        "amplitude m, frequency turns/m, phase turns",
+        |facts| 16 * facts.water.surface.components.len() as u64,
+    )
+};
+
+/// The water grid.
+pub static SURFACE: Slot =
+    Slot::buffer("surface", "height m and slope per water vertex", |facts| {
+        16 * vertices(facts)
+    });
+
+/// See the module.
+pub static PASS: Pass = Pass {
+    name: "surface",
+    shader: "stages/surface.wgsl",
+    reads: &[&WAVES],
+    reads_if_present: &[],
+    writes: &[&SURFACE],
+    uniforms: &[("light", Light::LAYOUT)],
+    wanted: wanted_for_light,
+    steps: Steps::BeamSet(|facts, set| {
+        if facts.lights.beam_sets[set.index].is_submerged() {
+            // Its rays start at the light and pass no surface.
+            return Vec::new();
+        }
+        grid_step("surface_main", facts, set)
+    }),
+    work: |facts| cells(facts) * (1.0 + facts.water.surface.components.len() as f64),
+};
+
+/// Vertices of the water grid.
+pub(super) fn vertices(facts: &SceneFacts) -> u64 {
+    (u64::from(facts.quality.water_cells) + 1).pow(2)
+}
+
+/// Cells of the water grid, as work.
+pub(super) fn cells(facts: &SceneFacts) -> f64 {
+    f64::from(facts.quality.water_cells).powi(2)
+}
+
+/// Passes that follow a light are in when there is one and something under water waits for it.
+pub fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
+    if !facts.has_receiver() {
+        return Err("nothing under water is to be lit".to_owned());
+    }
+    if facts.lights.lit.is_empty() {
+        return Err("no sun above the horizon and no point light shines into the water".to_owned());
+    }
+    let waves = facts.water.surface.components.len();
+    let sets = &facts.lights.beam_sets;
+    let count = |wanted: fn(&Source) -> bool, name: &str, names: &str| {
+        let first_sets = (0..sets.len()).filter(|&set| facts.lights.is_first_of_light(set));
+        let count = first_sets.filter(|&set| wanted(&sets[set].source)).count();
+        match count {
+            0 => None,
+            1 => Some(format!("1 {name}")),
+            _ => Some(format!("{count} {names}")),
+        }
+    };
+    let over: Vec<String> = [
+        count(|s| matches!(s, Source::Sun { .. }), "sun", "suns"),
+        count(
+            |s| matches!(s, Source::Point { .. }),
+            "point light",
+            "point lights",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let under = count(
+        |s| matches!(s, Source::Submerged { .. }),
+        "light shines under the water, through no surface",
+        "lights shine under the water, through no surface",
+    );
+    if over.is_empty() {
+        return Ok(under.unwrap_or_default());
+    }
+    let into = format!(
+        "{} {} into {}",
+        over.join(" and "),
+        if over.len() == 1 && over[0].starts_with("1 ") {
+            "shines"
+        } else {
+            "shine"
+        },
+        if facts.water.surface.max_slope() == 0.0 {
+            "flat water".to_owned()
+        } else {
+            format!("water with {waves} wave components")
+        },
+    );
+    Ok(match under {
+        Some(under) => format!("{into}; {under}"),
+        None => into,
+    })
+}
+
+/// One invocation per grid vertex.
+pub(super) fn grid_step(entry: &'static str, facts: &SceneFacts, set: BeamSetRun) -> Vec<Step> {
+    let vertices = (facts.quality.water_cells + 1).pow(2);
+    vec![Step::compute(
+        entry,
+        in_columns(vertices.div_ceil(64)),
+        vec![("light", light_uniform(facts, set))],
+    )]
+}

@@ -1,0 +1,87 @@
+//! Unfollowed — sums the light that takes ways which are not followed: slopes that look away from it, rays that come out of the water
+//! again, troughs below the floor. Only where the waves are steep or deep enough for that.
+
+use super::beams::BEAMS;
+use super::hits::HITS;
+use super::light::{Light, light_uniform};
+use super::sums::ENERGY;
+use super::surface::{SURFACE, WAVES, cells, wanted_for_light};
+use super::{Groups, Pass, Step, Steps};
+use crate::gpu_struct;
+
+/// Steps along the shortest wave, at least.
+const STEPS_PER_WAVE: f64 = 64.0;
+/// What is still a step on water without waves, m.
+const LONGEST_STEP_M: f64 = 1e6;
+/// Where the floor is if there is none, m.
+const NO_FLOOR_M: f64 = -1e30;
+
+gpu_struct! {
+    /// The uniform of `shaders/stages/unfollowed.wgsl`; fields are documented there.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    pub Unfollowed = "Unfollowed" {
+        max_height_m: f32,
+        max_slope: f32,
+        least_step_m: f32,
+        floor_y_m: f32,
+    }
+}
+
+/// See the module.
+pub static PASS: Pass = Pass {
+    name: "unfollowed",
+    shader: "stages/unfollowed.wgsl",
+    reads: &[&WAVES, &SURFACE, &BEAMS, &HITS],
+    reads_if_present: &[],
+    writes: &[&ENERGY],
+    uniforms: &[("light", Light::LAYOUT), ("unfollowed", Unfollowed::LAYOUT)],
+    wanted: |facts| {
+        wanted_for_light(facts)?;
+        let ways = facts.unfollowed_ways().words();
+        if ways.is_empty() {
+            return Err(
+                "no wave is so steep that light comes out of the water again or slopes look away from it, nor so high that it bares the floor"
+                    .to_owned(),
+            );
+        }
+        Ok(format!(
+            "counts light that is not followed: {}",
+            ways.join(", ")
+        ))
+    },
+    steps: Steps::FineBeamSet(|facts, set| {
+        if facts.lights.beam_sets[set.index].is_submerged() {
+            return Vec::new();
+        }
+        let ways = facts.unfollowed_ways();
+        let surface = &facts.water.surface;
+        let least_step_m = if ways.again || ways.bared {
+            (surface.shortest_wave_m() / STEPS_PER_WAVE).min(LONGEST_STEP_M)
+        } else {
+            0.0
+        };
+        let floor = facts.receivers.floor.as_ref();
+        let uniform = Unfollowed {
+            max_height_m: surface.max_height_m() as f32,
+            max_slope: surface.max_slope() as f32,
+            least_step_m: least_step_m as f32,
+            floor_y_m: floor.map_or(NO_FLOOR_M, |floor| floor.y_m) as f32,
+        };
+        let groups = facts.quality.water_cells.div_ceil(8);
+        vec![Step::compute(
+            "unfollowed_main",
+            Groups::Direct([groups, groups, 1]),
+            vec![
+                ("light", light_uniform(facts, set)),
+                ("unfollowed", bytemuck::bytes_of(&uniform).to_vec()),
+            ],
+        )]
+    }),
+    // Where rays are followed on, each goes through the waves some dozens of times.
+    work: |facts| {
+        let ways = facts.unfollowed_ways();
+        let steps = if ways.again || ways.bared { 32.0 } else { 0.0 };
+        let waves = facts.water.surface.components.len() as f64;
+        cells(facts) * (2.0 + steps * (1.0 + waves))
+    },
+};
