@@ -8,7 +8,7 @@ use super::{Groups, Slot, Step};
 use crate::facts::SceneFacts;
 use crate::gpu_struct;
 use crate::graph::{BeamSetRun, Clear};
-use crate::scene::Slicing;
+use crate::scene::{Dial, DialKind};
 
 /// Words at the head of the queue of beams that may reach an object's planes: two dispatches with their counts.
 pub const CULL_HEAD_WORDS: u64 = 2 * QUEUE_HEAD_WORDS;
@@ -18,6 +18,18 @@ pub const PLANE_LIST_HEAD_WORDS: u64 = 4;
 pub const PLANE_TILE_TEXELS: u32 = 4;
 /// Word of the beam queue where the dispatch over beams with wide footprints lies.
 pub const WIDE_DISPATCH: u32 = 4;
+
+/// How many reference planes there are: a dial that the methods which slice objects share.
+pub static PLANES: Dial = Dial {
+    name: "planes",
+    help: "Planes that cut a mesh's box along the light, the n + 1 of Tipprasert 2006. Time grows with them, and memory where each has an image \
+        of its own.",
+    kind: DialKind::Integer {
+        least: 2,
+        most: 1024,
+        default: 51,
+    },
+};
 
 gpu_struct! {
     /// The uniform of `shaders/shared/cull.wgsl`; fields are documented there.
@@ -92,7 +104,7 @@ pub fn planes_uniform(facts: &SceneFacts, object: usize, plane: u32) -> Vec<u8> 
         plane,
         scratch: MapLayout::of(facts).scratch(),
         capacity: narrow(2 * cells * cells),
-        smart: u32::from(facts.quality.slicing == Slicing::Smart),
+        smart: u32::from(facts.method.skips_empty_planes),
     };
     bytemuck::bytes_of(&uniform).to_vec()
 }
