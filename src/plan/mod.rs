@@ -73,6 +73,7 @@ pub struct PlannedSlot {
 }
 
 /// A plan as the executor runs it, with what it reads like.
+#[derive(Debug)]
 pub struct FramePlan {
     /// How much of the frame it makes.
     pub wanted: Wanted,

@@ -245,7 +245,7 @@ fn unsaid(stats: &Stats) -> Option<String> {
     }
     let open = stats.energy.iter().find(|a| a.closure > MOST_CLOSURE);
     match open {
-        Some(account) if !stats.planes.is_empty() && told("planes_do_not_conserve").is_none() => {
+        Some(account) if !stats.planes.is_empty() && told("method_does_not_conserve").is_none() => {
             Some(format!(
                 "planes place {:e} of the flux of light {} too much or too little and do not say so",
                 account.closure, account.light
