@@ -3,7 +3,7 @@
 
 pub mod slice_deposit;
 
-use super::Method;
+use super::{Conformance, Method};
 use crate::embed_shaders;
 use crate::facts::method::LeavesOut;
 use crate::facts::{MethodFacts, Product};
@@ -49,4 +49,8 @@ pub static METHOD: Method = Method {
         },
     },
     supports: |_| Ok(()),
+    conformance: Conformance {
+        sine_pool_error_at_256: 5e-3,
+        skips: &[],
+    },
 };
