@@ -1,6 +1,9 @@
 //! The methods: one folder per published method and ours, each with a description, its passes and its shaders; one line each in
 //! [`ALL`]. Everything that has to know which methods there are walks that list: planner, schema, flags, sweeps, tests, README.
 //!
+//! Beside the folders: `check` tells what is wrong with a scene's choice of a method, `describe` makes schema, flags and dials of sweeps from
+//! the list, `reference_planes` has the dial that methods which slice objects share.
+//!
 //! A method reads shared slots (water surface, beams, receivers, points) and makes one product. How to add one:
 //! `docs/adding-a-method.md`.
 
@@ -8,6 +11,7 @@ mod check;
 mod describe;
 pub mod level_map;
 pub mod planes;
+pub mod reference_planes;
 pub mod volumetric;
 
 pub use check::{check, misfits, resolve, shortest, validate};

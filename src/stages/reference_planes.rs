@@ -8,7 +8,6 @@ use super::{Groups, Slot, Step};
 use crate::facts::SceneFacts;
 use crate::gpu_struct;
 use crate::graph::{BeamSetRun, Clear};
-use crate::scene::{Dial, DialKind};
 
 /// Words at the head of the queue of beams that may reach an object's planes: two dispatches with their counts.
 pub const CULL_HEAD_WORDS: u64 = 2 * QUEUE_HEAD_WORDS;
@@ -18,18 +17,6 @@ pub const PLANE_LIST_HEAD_WORDS: u64 = 4;
 pub const PLANE_TILE_TEXELS: u32 = 4;
 /// Word of the beam queue where the dispatch over beams with wide footprints lies.
 pub const WIDE_DISPATCH: u32 = 4;
-
-/// How many reference planes there are: a dial that the methods which slice objects share.
-pub static PLANES: Dial = Dial {
-    name: "planes",
-    help: "Planes that cut a mesh's box along the light, the n + 1 of Tipprasert 2006. Time grows with them, and memory where each has an image \
-        of its own.",
-    kind: DialKind::Integer {
-        least: 2,
-        most: 1024,
-        default: 51,
-    },
-};
 
 gpu_struct! {
     /// The uniform of `shaders/shared/cull.wgsl`; fields are documented there.

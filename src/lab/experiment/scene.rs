@@ -8,9 +8,9 @@ use super::measure::ExperimentError;
 use crate::config::Limits;
 use crate::lab::shapes::Shape;
 use crate::methods::planes::{SLICING, SMART};
+use crate::methods::reference_planes::PLANES;
 use crate::methods::{self, Method, level_map, planes, volumetric};
 use crate::scene::{MethodChoice, ResolvedScene, Scene};
-use crate::stages::reference_planes::PLANES;
 
 /// Largest extent of the shape, m.
 const EXTENT_M: f64 = 0.6;

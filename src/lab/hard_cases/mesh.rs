@@ -14,9 +14,9 @@ use super::truths::{
     with, worst,
 };
 use crate::methods;
+use crate::methods::reference_planes::PLANES;
 use crate::physics::refraction::{direction_to_light, refract_direction};
 use crate::scene::{LayerName, MethodChoice, Quality};
-use crate::stages::reference_planes::PLANES;
 
 const REFERENCE: &str = "relative L1 of the floor against the reference";
 const SAME: &str = "largest difference of the floor from that of the sound mesh, to the mean";

@@ -3,11 +3,11 @@
 
 pub mod slice_deposit;
 
+use super::reference_planes::PLANES;
 use super::{Conformance, Method};
 use crate::embed_shaders;
 use crate::facts::method::LeavesOut;
 use crate::facts::{MethodFacts, Product};
-use crate::stages::reference_planes::PLANES;
 use crate::stages::{deposit, hits, irradiance, landed, split, unfollowed};
 
 /// See the module.
