@@ -84,6 +84,8 @@ pub fn fields() -> Vec<Field> {
     for field in &mut fields {
         if field.pointer == METHOD {
             field.words = ALL.map(|method| method.name.to_owned()).into();
+            let each = ALL.map(|method| format!("{}: {}", method.name, method.summary));
+            field.help = format!("{} {}.", field.help, each.join("; "));
         }
     }
     let taken = |flag: &str| {

@@ -24,8 +24,15 @@ use crate::scene::{Dial, Issue, MethodChoice, Quality, ResolvedScene, SceneError
 use crate::stages::shaders::Embedded;
 use crate::stages::{AFTER_MAPS, BEFORE_METHOD, PICTURE, Pass, shaders};
 
-/// All methods; the first is the default.
-pub static ALL: [&Method; 3] = [&level_map::METHOD, &planes::METHOD, &volumetric::METHOD];
+/// Declares [`ALL`], with its length.
+macro_rules! list {
+    ($($method:ident),+ $(,)?) => {
+        /// All methods; the first is the default.
+        pub static ALL: [&Method; [$(stringify!($method)),+].len()] = [$(&$method::METHOD),+];
+    };
+}
+
+list![level_map, planes, volumetric];
 
 /// A method.
 pub struct Method {
