@@ -23,7 +23,7 @@ use crate::scene::{
     Camera, Issue, LayerName, Light, Output, Quality, Receiver, ResolvedScene, Scene, SceneError,
 };
 use crate::stats::Warning;
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// Most suns and point lights that the camera's pass has room for.
 pub const MOST_LIGHTS: usize = 64;
@@ -122,7 +122,7 @@ pub struct SceneFacts {
     /// World position of the local origin, m.
     pub origin_m: DVec3,
     /// The waves around the local origin.
-    pub surface: WaterSurface,
+    pub surface: Surface,
     /// Index of refraction.
     pub ior: f64,
     /// Absorption a, 1/m.
@@ -175,7 +175,7 @@ impl SceneFacts {
     pub fn of(resolved: &ResolvedScene) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let origin_m = origin(resolved);
-        let surface = WaterSurface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z));
+        let surface = Surface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z));
         let water = &scene.water;
         let extinction_per_m =
             std::array::from_fn(|c| water.absorption_per_m[c] + water.scattering_per_m[c]);
@@ -461,7 +461,7 @@ fn geometry_bytes(resolved: &ResolvedScene) -> u64 {
 fn air_lights(
     lights: &[Light],
     origin_m: DVec3,
-    surface: &WaterSurface,
+    surface: &Surface,
 ) -> Result<Vec<AirLight>, SceneError> {
     let all: Vec<AirLight> = lights
         .iter()
@@ -496,7 +496,7 @@ fn sky_sum(lights: &[Light]) -> [f64; 3] {
 fn white_radiance(
     scene: &Scene,
     origin_m: DVec3,
-    surface: &WaterSurface,
+    surface: &Surface,
     sky_radiance: [f64; 3],
 ) -> f64 {
     let mean = |rgb: [f64; 3]| rgb.iter().sum::<f64>() / 3.0;

@@ -84,7 +84,7 @@ fn view_uniform(facts: &SceneFacts, run: Run<'_>) -> Vec<u8> {
         first_row,
         row_count: rows,
         orthographic: u32::from(camera.orthographic),
-        wave_count: facts.surface.components.len() as u32,
+        wave_count: facts.surface.gpu_element_count() as u32,
         instance_count: facts.objects.len() as u32,
         light_count: facts.lights.len() as u32,
         air_light_count: facts.air_lights.len() as u32,

@@ -136,7 +136,7 @@ pub fn light_uniform(facts: &SceneFacts, index: usize, wide_sums: bool) -> Vec<u
         window_min: vec2(light.grid.places.min),
         cell: vec2(light.grid.places.size() / f64::from(cells)),
         cells,
-        wave_count: facts.surface.components.len() as u32,
+        wave_count: facts.surface.gpu_element_count() as u32,
         object_count: facts.objects.len() as u32,
         has_floor: u32::from(facts.floor.is_some()),
         ior: facts.ior as f32,

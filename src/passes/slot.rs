@@ -362,7 +362,7 @@ impl Slot {
             | Self::VisibleTransport
             | Self::VisibleIrradiance
             | Self::Radiance => 16 * pixels,
-            Self::Waves => 16 * facts.surface.components.len() as u64,
+            Self::Waves => 16 * facts.surface.gpu_element_count() as u64,
             // At least one: a binding may not be shorter than an element of its array.
             Self::Instances => {
                 size_of::<super::gpu_data::Instance>() as u64 * facts.objects.len().max(1) as u64

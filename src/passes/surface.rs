@@ -33,7 +33,6 @@ pub(super) fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
     if facts.lights.is_empty() {
         return Err("no sun above the horizon and no point light shines into the water".to_owned());
     }
-    let waves = facts.surface.components.len();
     let count = |wanted: fn(&Source) -> bool, name: &str, names: &str| {
         let count = facts.lights.iter().filter(|s| wanted(&s.source)).count();
         match count {
@@ -69,11 +68,7 @@ pub(super) fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
         } else {
             "shine"
         },
-        if facts.surface.max_slope() == 0.0 {
-            "flat water".to_owned()
-        } else {
-            format!("water with {waves} wave components")
-        },
+        facts.surface.description(),
     );
     Ok(match under {
         Some(under) => format!("{into}; {under}"),

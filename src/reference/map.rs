@@ -15,7 +15,7 @@ use super::window::{LightWindow, Target, window_of};
 use super::{ReferenceError, ReferenceSettings};
 use crate::physics::refraction::direction_to_light;
 use crate::scene::{ResolvedScene, Scene};
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// How the error falls with the number of rays N, as N to this power; measured 0.72 … 0.75 on waves that fold.
 pub(super) const ORDER: f64 = 0.73;
@@ -140,7 +140,7 @@ struct Counter<'a, const K: usize> {
     scene: &'a Scene,
     map: FloorMap,
     occluders: Occluders,
-    surface: WaterSurface,
+    surface: Surface,
     suns: Vec<CountedLight>,
     extinction_per_m: [f64; K],
     /// Which coefficient each channel has.
@@ -156,7 +156,7 @@ impl<'a, const K: usize> Counter<'a, K> {
         let scene = &resolved.scene;
         let map = FloorMap::of(scene)?;
         let occluders = Occluders::of(resolved, map.origin_m)?;
-        let surface = WaterSurface::of(scene).recentred(map.origin_m);
+        let surface = Surface::of(scene).recentred(map.origin_m);
         check_surface(&surface)?;
         let size_m = map.size_m();
         let mut targets = vec![Target {

@@ -244,7 +244,7 @@ impl Volley<'_> {
                 }
                 let top_m = start_m + step_m * i as f64;
                 each(&Ray {
-                    from_m: DVec3::new(top_m.x, block.height_m[i], top_m.y),
+                    from_m: DVec3::new(top_m.x, block.water.height_m[i], top_m.y),
                     to_m: DVec3::new(block.x_m[i], -self.rays.end_m, block.z_m[i]),
                     path_m: block.path_m[i],
                     flux: block.entered[i] * cells.area_m2(),

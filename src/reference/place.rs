@@ -1,7 +1,6 @@
 //! A scene in local coordinates, as the engines for views and objects need it.
 
 use std::cell::OnceCell;
-use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
@@ -13,7 +12,6 @@ use super::window::LampDrift;
 use crate::facts::SceneFacts;
 use crate::facts::source::Source;
 use crate::physics::sky::sky_irradiance;
-use crate::physics::turns::sin_cos_turns;
 use crate::scene::{Light, ResolvedScene};
 use crate::waves::SurfacePoint;
 
@@ -62,16 +60,10 @@ impl Place {
                     .then(|| *drift.get_or_init(|| LampDrift::of(&facts.surface, facts.ior))),
             })
             .collect();
-        let derivative = |order: i32| -> f64 {
-            let waves = facts.surface.components.iter();
-            waves
-                .map(|c| c.amplitude_m * (TAU * c.frequency_per_m.length()).powi(order))
-                .sum()
-        };
         Ok(Self {
             steepest: facts.surface.max_slope(),
-            bend_per_m: derivative(2),
-            twist_per_m2: derivative(3),
+            bend_per_m: facts.surface.max_second_derivative_per_m(),
+            twist_per_m2: facts.surface.max_third_derivative_per_m2(),
             facts,
             occluders,
             lights,
@@ -80,22 +72,9 @@ impl Place {
 
     /// Height and slope at `water_m`, and the largest second derivative along any direction within `radius_m`, 1/m.
     pub(super) fn curved(&self, water_m: DVec2, radius_m: f64) -> (SurfacePoint, f64) {
-        let (mut height_m, mut slope) = (0.0, DVec2::ZERO);
-        let (mut xx, mut xz, mut zz) = (0.0, 0.0, 0.0);
-        for c in &self.facts.surface.components {
-            let (sin, cos) = sin_cos_turns(water_m.dot(c.frequency_per_m) + c.phase_turns);
-            let k = c.frequency_per_m * TAU;
-            let high_m = c.amplitude_m * sin;
-            height_m += high_m;
-            slope += k * (c.amplitude_m * cos);
-            xx -= high_m * k.x * k.x;
-            xz -= high_m * k.x * k.y;
-            zz -= high_m * k.y * k.y;
-        }
-        // The larger eigenvalue of a symmetric matrix, by magnitude.
-        let here = (0.5 * (xx + zz)).abs() + (0.5 * (xx - zz)).hypot(xz);
-        let bend_per_m = self.bend_per_m.min(here + self.twist_per_m2 * radius_m);
-        (SurfacePoint { height_m, slope }, bend_per_m)
+        let (at, curvature) = self.facts.surface.curved_at(water_m.x, water_m.y);
+        let within_m = curvature.largest_per_m() + self.twist_per_m2 * radius_m;
+        (at, self.bend_per_m.min(within_m))
     }
 
     /// Height of `p_m` over the water.

@@ -8,7 +8,7 @@ use crate::facts::placement::LevelMapKey;
 use crate::gpu::Binding;
 use crate::gpu::uniforms::Placed;
 use crate::passes::desc::Step;
-use crate::passes::gpu_data::{Comparison, Receiver, Wave};
+use crate::passes::gpu_data::{Comparison, Receiver};
 use crate::passes::slot::{SPLIT_HEAD_WORDS, Slot, WIDE_GROUPS};
 use crate::passes::{estimate, light};
 use crate::plan::Plan;
@@ -163,17 +163,7 @@ impl Renderer {
                 self.gpu.queue.write_buffer(buffer, 0, bytes);
             }
         };
-        let waves: Vec<Wave> = facts
-            .surface
-            .components
-            .iter()
-            .map(|c| Wave {
-                amplitude_m: c.amplitude_m as f32,
-                frequency_x_per_m: c.frequency_per_m.x as f32,
-                frequency_z_per_m: c.frequency_per_m.y as f32,
-                phase_turns: c.phase_turns as f32,
-            })
-            .collect();
+        let waves = facts.surface.gpu_elements();
         write(Slot::Waves, bytemuck::cast_slice(&waves));
         if let Some(geometry) = &self.geometry
             && buffers.by_name.contains_key(slot_name(Slot::Instances))

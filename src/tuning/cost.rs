@@ -24,7 +24,7 @@ pub struct PassRate {
 /// known.
 pub fn work(pass: &str, facts: &SceneFacts) -> f64 {
     let cells = f64::from(facts.quality.water_cells).powi(2);
-    let waves = facts.surface.components.len() as f64;
+    let waves = facts.surface.gpu_element_count() as f64;
     let wet = facts.wet_objects().count() as f64;
     let maps = MapLayout::of(facts);
     let texels = maps.flux_texels() as f64;

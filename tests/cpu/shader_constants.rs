@@ -141,7 +141,7 @@ fn receivers_have_the_size_that_slots_reckon_with() {
         Some(slot::Slot::Receivers.bytes(&facts)),
         "the floor and one object"
     );
-    let waves = facts.surface.components.len() as u64;
+    let waves = facts.surface.gpu_element_count() as u64;
     assert_eq!(
         Some(slot::Slot::Waves.bytes(&facts) / waves),
         size_of("Wave")
