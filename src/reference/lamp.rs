@@ -24,13 +24,12 @@ pub(super) struct Lamp<'a> {
 }
 
 impl<'a> Lamp<'a> {
-    pub(super) fn new(surface: &'a Surface, position_m: DVec3, ior: f64) -> Self {
-        let water_m = surface.at(position_m.x, position_m.z).height_m;
+    pub(super) fn new(surface: &'a Surface, position_m: DVec3, submerged: bool, ior: f64) -> Self {
         Self {
             surface,
             position_m,
             ior,
-            submerged: position_m.y <= water_m,
+            submerged,
         }
     }
 

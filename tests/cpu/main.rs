@@ -42,6 +42,7 @@ mod reference_errors;
 mod reference_lamps;
 mod reference_lens;
 mod reference_meshes;
+mod reference_texels;
 mod scene_facts;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
