@@ -32,7 +32,7 @@ pub use self::receivers::{FloorFacts, FloorMap, ReceiverFacts};
 pub use self::water::{Band, WaterFacts};
 use crate::scene::{Output, Quality, Receiver, ResolvedScene, SceneError};
 use crate::stats::Warning;
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// The figures of a scene.
 #[derive(Clone, Debug)]
@@ -63,7 +63,7 @@ impl SceneFacts {
     pub fn of(resolved: &ResolvedScene, method: MethodFacts) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let origin_m = origin(resolved);
-        let surface = WaterSurface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z));
+        let surface = Surface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z));
         let mut quality = scene.quality.clone();
         let output = OutputFacts::of(scene, origin_m);
         if output.is_floor_map() {

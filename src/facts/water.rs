@@ -1,13 +1,13 @@
 //! The water of a scene.
 
 use crate::scene::Water;
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// The water: its surface at the moment of the frame, and its optics.
 #[derive(Clone, Debug)]
 pub struct WaterFacts {
     /// The waves around the local origin.
-    pub surface: WaterSurface,
+    pub surface: Surface,
     /// Index of refraction.
     pub ior: f64,
     /// Absorption a, 1/m.
@@ -17,7 +17,7 @@ pub struct WaterFacts {
 }
 
 impl WaterFacts {
-    pub(super) fn of(water: &Water, surface: WaterSurface) -> Self {
+    pub(super) fn of(water: &Water, surface: Surface) -> Self {
         Self {
             surface,
             ior: water.ior,
