@@ -233,7 +233,7 @@ impl Renderer {
         let asked = resolved;
         let resolved = tuned.as_ref().map_or(asked, |(scene, _)| scene);
         let facts = SceneFacts::with_warnings(resolved)?;
-        let plan = plan::plan_scene(&facts, self)?;
+        let plan = self.plan_in_budget(&facts)?;
         let plan_ms = ms_since(started);
         let cache_before = self.level_maps.stats();
         let ran = Instant::now();
@@ -287,6 +287,20 @@ impl Renderer {
             let adapter = format!("{}, {}", stats.adapter.name, stats.adapter.driver);
             let calibrated = &self.calibration.adapter;
             stats.warnings.extend(tune::foreign(calibrated, &adapter));
+    /// The plan of a frame. Level maps of other scenes make way where they would not fit beside it: whether a frame is rendered does not
+    /// depend on what is cached.
+    fn plan_in_budget(&mut self, facts: &SceneFacts) -> Result<Plan, RenderError> {
+        let plan = plan::plan_scene(facts, self)?;
+        let is_over = plan.peak_bytes > self.memory_budget_bytes;
+        if !is_over || self.arena.is_none() || !plan::level_maps(facts).is_empty() {
+            return Ok(plan);
+        }
+        self.level_maps.clear();
+        self.arena = None;
+        self.bind_groups.clear();
+        Ok(plan::plan_scene(facts, self)?)
+    }
+
             stats.accuracy.get_or_insert_default().chosen = Some(chosen);
         }
         stats.time_ms.total = ms_since(started);

@@ -13,3 +13,10 @@ pub mod cost;
 pub mod ladder;
 
 pub use calibration::Calibration;
+
+use crate::scene::Quality;
+
+/// Whether dials are chosen for what `quality` asks.
+pub fn chooses_dials(quality: &Quality) -> bool {
+    quality.target_error.is_some() || quality.time_budget_ms.is_some()
+}

@@ -8,6 +8,7 @@
 
 mod accuracy_program;
 mod accuracy_service;
+mod chosen_dials;
 mod determinism;
 mod energy;
 mod estimate;
