@@ -1,7 +1,7 @@
 //! Pipelines whose bindings are matched by name: the WGSL variable's name is the only place where a binding is named.
 
 use super::bind_groups::{BindGroups, Binding, Bound};
-use super::shader::{Access, Module, Reflected, ShaderSources};
+use super::shader::{Access, Module, Reflected};
 use super::{GpuContext, GpuError};
 
 /// A compute entry point, ready to run.
@@ -13,31 +13,44 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Builds entry point `entry` of shader file `path` with values for `override` constants (those it does not have are skipped).
-    pub fn new(
-        gpu: &GpuContext,
-        sources: &ShaderSources,
-        path: &str,
-        entry: &str,
-        constants: &[(&'static str, f64)],
-    ) -> Result<Self, GpuError> {
-        Self::from_text(gpu, path, sources.assemble(path)?, entry, constants)
-    }
-
-    /// The same for an entry point that runs in pieces and is told which: see [`super::pieces`].
+    /// Builds entry point `entry` of `module`, which is assembled of shader file `path`, with values for `override` constants; all of them
+    /// have to be there.
     ///
     /// # Errors
-    /// As [`Self::new`], and when the entry point cannot be cut.
-    pub fn in_pieces(
+    /// When there is no such entry point, or the device refuses it.
+    pub fn new(
         gpu: &GpuContext,
-        sources: &ShaderSources,
         path: &str,
+        module: &Module,
         entry: &str,
-        constants: &[(&'static str, f64)],
+        constants: &[(&str, f64)],
     ) -> Result<Self, GpuError> {
-        let module = Module::parse(path, sources.assemble(path)?)?;
-        let text = super::pieces::told_its_piece(&module, path, entry)?;
-        Self::from_text(gpu, path, text, entry, constants)
+        let layout = BoundLayout::new(
+            gpu,
+            path,
+            module.bindings(path, entry)?,
+            wgpu::ShaderStages::COMPUTE,
+        );
+        let shader = shader_module(gpu, path, module);
+        let pipeline = gpu
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&layout.pipeline_layout(gpu, entry)),
+                module: &shader,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants,
+                    ..wgpu::PipelineCompilationOptions::default()
+                },
+                cache: None,
+            });
+        gpu.check()?;
+        Ok(Self {
+            name: entry.to_owned(),
+            layout,
+            pipeline,
+        })
     }
 
     /// The same from assembled WGSL; `path` is for messages.
@@ -49,40 +62,9 @@ impl Kernel {
         path: &str,
         text: String,
         entry: &str,
-        constants: &[(&'static str, f64)],
+        constants: &[(&str, f64)],
     ) -> Result<Self, GpuError> {
-        let module = Module::parse(path, text)?;
-        let layout = BoundLayout::new(
-            gpu,
-            path,
-            module.bindings(path, entry)?,
-            wgpu::ShaderStages::COMPUTE,
-        );
-        let shader = shader_module(gpu, path, &module);
-        let constants: Vec<(&str, f64)> = constants
-            .iter()
-            .copied()
-            .filter(|(name, _)| module.has_override(name))
-            .collect();
-        let pipeline = gpu
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&layout.pipeline_layout(gpu, entry)),
-                module: &shader,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &constants,
-                    ..wgpu::PipelineCompilationOptions::default()
-                },
-                cache: None,
-            });
-        gpu.check()?;
-        Ok(Self {
-            name: entry.to_owned(),
-            layout,
-            pipeline,
-        })
+        Self::new(gpu, path, &Module::parse(path, text)?, entry, constants)
     }
 
     /// What the kernel binds.
@@ -110,7 +92,7 @@ impl Kernel {
 }
 
 /// What a raster kernel draws into.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RasterTargets<'a> {
     /// Colour formats in the order of the fragment's outputs.
     pub colors: &'a [wgpu::TextureFormat],
@@ -129,15 +111,18 @@ pub struct RasterKernel {
 }
 
 impl RasterKernel {
-    /// Builds the pipeline of `vertex` and `fragment` of shader file `path`; both sides of triangles are drawn.
+    /// Builds the pipeline of a vertex and a fragment entry point of `module`, which is assembled of shader file `path`; both sides of
+    /// triangles are drawn.
+    ///
+    /// # Errors
+    /// When there are no such entry points, or the device refuses them.
     pub fn new(
         gpu: &GpuContext,
-        sources: &ShaderSources,
         path: &str,
-        (vertex, fragment): (&str, &str),
+        module: &Module,
+        [vertex, fragment]: [&str; 2],
         targets: &RasterTargets<'_>,
     ) -> Result<Self, GpuError> {
-        let module = Module::parse(path, sources.assemble(path)?)?;
         let mut bindings = module.bindings(path, vertex)?;
         for found in module.bindings(path, fragment)? {
             if !bindings.contains(&found) {
@@ -147,7 +132,7 @@ impl RasterKernel {
         bindings.sort_by_key(|b| b.binding);
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let layout = BoundLayout::new(gpu, path, bindings, stages);
-        let shader = shader_module(gpu, path, &module);
+        let shader = shader_module(gpu, path, module);
         let colors: Vec<Option<wgpu::ColorTargetState>> = targets
             .colors
             .iter()

@@ -3,6 +3,7 @@
 pub mod bind_groups;
 pub mod context;
 pub mod kernel;
+pub mod kernels;
 pub mod pieces;
 pub mod pool;
 pub mod readback;
@@ -13,6 +14,7 @@ pub mod uniforms;
 pub use bind_groups::{BindGroups, Binding};
 pub use context::GpuContext;
 pub use kernel::{Kernel, RasterKernel};
+pub use kernels::KernelCache;
 pub use pool::BufferPool;
 
 /// What can go wrong on the GPU.

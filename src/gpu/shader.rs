@@ -150,13 +150,7 @@ impl Module {
 
     /// What `entry` binds, by binding number.
     pub fn bindings(&self, name: &str, entry: &str) -> Result<Vec<Reflected>, GpuError> {
-        let index = self
-            .ir
-            .entry_points
-            .iter()
-            .position(|e| e.name == entry)
-            .ok_or_else(|| shader_error(name, &format!("has no entry point `{entry}`")))?;
-        let used = self.info.get_entry_point(index);
+        let used = self.info.get_entry_point(self.index_of(name, entry)?);
         let mut found = Vec::new();
         for (handle, variable) in self.ir.global_variables.iter() {
             let Some(binding) = variable.binding else {
@@ -195,12 +189,36 @@ impl Module {
         Ok(found)
     }
 
-    /// Whether the module declares an `override` of this name.
-    pub fn has_override(&self, name: &str) -> bool {
-        self.ir
-            .overrides
-            .iter()
-            .any(|(_, o)| o.name.as_deref() == Some(name))
+    /// Names of the `override` constants on which entry point `entry` depends, in the order of the text.
+    ///
+    /// # Errors
+    /// When there is no such entry point.
+    pub fn overrides_of(&self, name: &str, entry: &str) -> Result<Vec<String>, GpuError> {
+        let ir = &self.ir;
+        let entry = &ir.entry_points[self.index_of(name, entry)?];
+        // What other constants are made of counts everywhere.
+        let mut used = overrides_in(&ir.global_expressions);
+        let mut seen = BTreeSet::new();
+        let mut pending = vec![&entry.function];
+        while let Some(function) = pending.pop() {
+            used.extend(overrides_in(&function.expressions));
+            let mut called = Vec::new();
+            calls(&function.body, &mut called);
+            let new = called.into_iter().filter(|&callee| seen.insert(callee));
+            pending.extend(new.map(|callee| &ir.functions[callee]));
+        }
+        let declared = ir.overrides.iter();
+        let used = declared.filter(|(handle, _)| used.contains(handle));
+        Ok(used
+            .filter_map(|(_, constant)| constant.name.clone())
+            .collect())
+    }
+
+    fn index_of(&self, name: &str, entry: &str) -> Result<usize, GpuError> {
+        let mut entries = self.ir.entry_points.iter();
+        entries
+            .position(|e| e.name == entry)
+            .ok_or_else(|| shader_error(name, &format!("has no entry point `{entry}`")))
     }
 
     fn access(&self, variable: &naga::GlobalVariable) -> Option<Access> {
@@ -221,6 +239,44 @@ impl Module {
                 _ => None,
             },
             _ => None,
+        }
+    }
+}
+
+fn overrides_in(
+    expressions: &naga::Arena<naga::Expression>,
+) -> BTreeSet<naga::Handle<naga::Override>> {
+    let overrides = expressions.iter().map(|(_, expression)| expression);
+    overrides
+        .filter_map(|expression| match expression {
+            naga::Expression::Override(handle) => Some(*handle),
+            _ => None,
+        })
+        .collect()
+}
+
+/// The functions that a block calls itself.
+fn calls(block: &naga::Block, into: &mut Vec<naga::Handle<naga::Function>>) {
+    for statement in block {
+        match statement {
+            naga::Statement::Call { function, .. } => into.push(*function),
+            naga::Statement::Block(inner) => calls(inner, into),
+            naga::Statement::If { accept, reject, .. } => {
+                calls(accept, into);
+                calls(reject, into);
+            }
+            naga::Statement::Switch { cases, .. } => {
+                for case in cases {
+                    calls(&case.body, into);
+                }
+            }
+            naga::Statement::Loop {
+                body, continuing, ..
+            } => {
+                calls(body, into);
+                calls(continuing, into);
+            }
+            _ => {}
         }
     }
 }

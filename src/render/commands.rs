@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use super::buffers::{DrawTargets, FrameBuffers};
-use super::{KernelKey, RenderError, Renderer, ms_since, slot_name};
+use super::{RenderError, Renderer, ms_since, slot_name};
 use crate::facts::SceneFacts;
 use crate::gpu::kernel::RasterTargets;
+use crate::gpu::kernels::KernelId;
 use crate::gpu::pieces::PIECE;
 use crate::gpu::shader::Access;
-use crate::gpu::{Binding, GpuError, Kernel, RasterKernel};
+use crate::gpu::{Binding, GpuError};
 use crate::passes::desc::{Groups, PassDesc, Run, Step, Surface, Work};
 use crate::passes::level_map::EMPTY_DEPTH;
 use crate::passes::slot::Slot;
@@ -185,31 +186,19 @@ impl Renderer {
             );
         }
         let cut = self.cut_of(encoder, pass.name, groups, buffers)?;
-        let by_planes = facts.quality.has_planes();
-        let key = (
-            pass.name,
-            step.entry,
-            facts.attenuates(),
-            wide_sums,
-            by_planes,
-            cut.is_some(),
-        );
-        if !self.kernels.contains_key(&key) {
-            let path = format!("passes/{}.wgsl", pass.name);
-            let switch = |on: bool| f64::from(u8::from(on));
-            let constants = [
+        let switch = |on: bool| f64::from(u8::from(on));
+        let kernel = self.kernels.compute(
+            &self.gpu,
+            &self.sources,
+            (&format!("passes/{}.wgsl", pass.name), step.entry),
+            &[
                 ("ATTENUATES", switch(facts.attenuates())),
                 ("WIDE_SUMS", switch(wide_sums)),
-                ("PLANES", switch(by_planes)),
-            ];
-            let make = if cut.is_some() {
-                Kernel::in_pieces
-            } else {
-                Kernel::new
-            };
-            let kernel = make(&self.gpu, &self.sources, &path, step.entry, &constants)?;
-            self.kernels.insert(key, kernel);
-        }
+                ("PLANES", switch(facts.quality.has_planes())),
+            ],
+            cut.is_some(),
+        )?;
+        let key = (pass.name, kernel);
         let Some((all, first)) = cut else {
             let launch = match groups {
                 Groups::Direct(all) => Launch::Groups(all),
@@ -235,14 +224,14 @@ impl Renderer {
     fn launch(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        key: KernelKey,
+        (pass, kernel): (&'static str, KernelId),
         step: &Step,
         launch: Launch,
         buffers: &FrameBuffers,
         texture: &dyn Fn(&str) -> Option<wgpu::TextureView>,
     ) -> Result<(), GpuError> {
         let uniforms = self.place_uniforms(step);
-        let kernel = &self.kernels[&key];
+        let kernel = self.kernels.kernel(kernel);
         let textures: BTreeMap<&str, wgpu::TextureView> = kernel
             .bindings()
             .iter()
@@ -253,7 +242,7 @@ impl Renderer {
             let texture = textures.get(name).map(Binding::Texture);
             texture.or_else(|| Some(uniforms.or_buffer(name, buffers)))
         })?;
-        let timestamp_writes = self.timing.span(key.0).map(|(query_set, begin, end)| {
+        let timestamp_writes = self.timing.span(pass).map(|(query_set, begin, end)| {
             wgpu::ComputePassTimestampWrites {
                 query_set,
                 beginning_of_pass_write_index: Some(begin),
@@ -283,30 +272,29 @@ impl Renderer {
         targets: &DrawTargets,
     ) -> Result<(), GpuError> {
         let back = surface == Surface::Back;
-        let key = match surface {
-            Surface::Front | Surface::Back => ("level_map_fragment", back),
-            Surface::Layer(_) => ("level_map_behind", false),
+        let fragment = match surface {
+            Surface::Front | Surface::Back => "level_map_fragment",
+            Surface::Layer(_) => "level_map_behind",
         };
-        if !self.raster_kernels.contains_key(&key) {
-            let kernel = RasterKernel::new(
-                &self.gpu,
-                &self.sources,
+        let kernel = self.kernels.raster(
+            &self.gpu,
+            &self.sources,
+            (
                 &format!("passes/{}.wgsl", pass.name),
-                (step.entry, key.0),
-                &RasterTargets {
-                    colors: &[wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint],
-                    depth: wgpu::TextureFormat::Depth32Float,
-                    depth_compare: if back {
-                        wgpu::CompareFunction::Greater
-                    } else {
-                        wgpu::CompareFunction::Less
-                    },
+                [step.entry, fragment],
+            ),
+            RasterTargets {
+                colors: &[wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint],
+                depth: wgpu::TextureFormat::Depth32Float,
+                depth_compare: if back {
+                    wgpu::CompareFunction::Greater
+                } else {
+                    wgpu::CompareFunction::Less
                 },
-            )?;
-            self.raster_kernels.insert(key, kernel);
-        }
+            },
+        )?;
         let uniforms = self.place_uniforms(step);
-        let kernel = &self.raster_kernels[&key];
+        let kernel = self.kernels.raster_kernel(kernel);
         let groups = &mut self.bind_groups;
         let bound = kernel.bind(&self.gpu, groups, |name| match (name, surface) {
             ("previous_depth", Surface::Layer(1)) => Some(Binding::Texture(&targets.front)),

@@ -25,7 +25,7 @@ use crate::frame::Frame;
 use crate::gpu::shader::ShaderSources;
 use crate::gpu::timing::Timing;
 use crate::gpu::uniforms::Uniforms;
-use crate::gpu::{BindGroups, BufferPool, GpuContext, GpuError, Kernel, RasterKernel};
+use crate::gpu::{BindGroups, BufferPool, GpuContext, GpuError, KernelCache};
 use crate::passes::{self, Repeat, Slot, shaders};
 use crate::plan::{self, Cached, Plan};
 use crate::scene::{ResolvedScene, SceneError};
@@ -80,13 +80,6 @@ impl From<plan::PlanError> for RenderError {
 /// Idle polls (one a second) after which buffers kept for the next frame are given up.
 const IDLE_POLLS: u32 = 5;
 
-/// Pass, entry point, whether it attenuates, whether its flux sums are wide, whether meshes get their light by planes, whether it
-/// runs in pieces.
-type KernelKey = (&'static str, &'static str, bool, bool, bool, bool);
-
-/// Fragment entry point, and whether the farthest fragment stays instead of the nearest.
-type RasterKey = (&'static str, bool);
-
 /// Owns the GPU context and the caches; lives on the GPU thread.
 #[derive(Debug)]
 pub struct Renderer {
@@ -96,9 +89,7 @@ pub struct Renderer {
     uniforms: Uniforms,
     bind_groups: BindGroups,
     timing: Timing,
-    kernels: BTreeMap<KernelKey, Kernel>,
-    raster_kernels: BTreeMap<RasterKey, RasterKernel>,
-    slice_kernel: Option<RasterKernel>,
+    kernels: KernelCache,
     level_maps: LevelMapCache,
     arena: Option<wgpu::Buffer>,
     geometry: Option<geometry::Geometry>,
@@ -145,9 +136,7 @@ impl Renderer {
             pool: BufferPool::default(),
             uniforms: Uniforms::default(),
             bind_groups: BindGroups::default(),
-            kernels: BTreeMap::new(),
-            raster_kernels: BTreeMap::new(),
-            slice_kernel: None,
+            kernels: KernelCache::default(),
             level_maps: LevelMapCache::new(arena_bytes),
             arena: None,
             geometry: None,
@@ -384,6 +373,11 @@ impl Renderer {
     pub fn wide_sum_reruns(&self) -> u64 {
         self.wide_sum_reruns
     }
+    /// Kernels that were compiled since the start.
+    pub fn kernels_compiled(&self) -> usize {
+        self.kernels.compiled()
+    }
+
 
     /// How often since the start what comes after a light was recorded while the GPU was at work on it.
     pub fn recorded_ahead(&self) -> u64 {

@@ -2,8 +2,8 @@
 
 use super::Renderer;
 use super::buffers::FrameBuffers;
+use crate::gpu::GpuError;
 use crate::gpu::kernel::RasterTargets;
-use crate::gpu::{GpuError, RasterKernel};
 use crate::passes::desc::{PassDesc, Step};
 
 impl Renderer {
@@ -15,23 +15,24 @@ impl Renderer {
         (plane, texels, vertices): (u32, u32, u32),
         buffers: &FrameBuffers,
     ) -> Result<(), GpuError> {
-        if self.slice_kernel.is_none() {
-            self.slice_kernel = Some(RasterKernel::new(
-                &self.gpu,
-                &self.sources,
-                &format!("passes/{}.wgsl", pass.name),
-                (step.entry, "slice_fragment"),
-                &RasterTargets {
-                    colors: &[wgpu::TextureFormat::Rgba8Unorm],
-                    depth: wgpu::TextureFormat::Depth32Float,
-                    depth_compare: wgpu::CompareFunction::Less,
-                },
-            )?);
-        }
-        let uniforms = self.place_uniforms(step);
-        let (Some(kernel), Some(slices)) = (&self.slice_kernel, &buffers.slices) else {
+        let Some(slices) = &buffers.slices else {
             return Ok(());
         };
+        let kernel = self.kernels.raster(
+            &self.gpu,
+            &self.sources,
+            (
+                &format!("passes/{}.wgsl", pass.name),
+                [step.entry, "slice_fragment"],
+            ),
+            RasterTargets {
+                colors: &[wgpu::TextureFormat::Rgba8Unorm],
+                depth: wgpu::TextureFormat::Depth32Float,
+                depth_compare: wgpu::CompareFunction::Less,
+            },
+        )?;
+        let uniforms = self.place_uniforms(step);
+        let kernel = self.kernels.raster_kernel(kernel);
         let bound = kernel.bind(&self.gpu, &mut self.bind_groups, |name| {
             Some(uniforms.or_buffer(name, buffers))
         })?;

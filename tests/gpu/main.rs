@@ -27,6 +27,7 @@ mod harness;
 mod instances;
 #[path = "../support/instances.rs"]
 mod instances_scene;
+mod kernels;
 mod lamp_truths;
 mod lamps;
 mod layers;
