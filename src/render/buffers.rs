@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{RenderError, Renderer, geometry, slot_name};
+use super::{RenderError, Renderer, slot_name};
 use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
 use crate::gpu::Binding;
@@ -175,7 +175,7 @@ impl Renderer {
             })
             .collect();
         write(Slot::Waves, bytemuck::cast_slice(&waves));
-        if let Some(geometry) = &self.geometry
+        if let Some(geometry) = self.geometry.in_use()
             && buffers.by_name.contains_key(slot_name(Slot::Instances))
         {
             write(
@@ -208,16 +208,8 @@ impl Renderer {
         if resolved.meshes.is_empty() {
             return None;
         }
-        if !self
-            .geometry
-            .as_ref()
-            .is_some_and(|g| g.holds(&resolved.meshes))
-        {
-            // They hold the last one.
-            self.bind_groups.clear();
-            self.geometry = Some(geometry::Geometry::upload(&self.gpu, &resolved.meshes));
-        }
-        self.geometry.as_ref().map(|g| g.buffer.clone())
+        let geometry = self.geometry.hold(&self.gpu, &resolved.meshes);
+        Some(geometry.buffer.clone())
     }
 
     pub(super) fn arena_buffer(&mut self) -> wgpu::Buffer {

@@ -9,9 +9,9 @@ use super::buffers::{EMPTY_LIST, FrameBuffers, INDIRECT, QUEUE_HEADS, clear_for_
 use super::collect::{ACCOUNT_BYTES, has_wrapped};
 use super::commands::Recording;
 use super::comparison::{Comparison, ComparisonPasses};
+use super::geometry::Geometry;
 use super::{
-    RenderError, Renderer, RunResult, check_cancelled, collect, geometry, ms_since, slot_name,
-    timed,
+    RenderError, Renderer, RunResult, check_cancelled, collect, ms_since, slot_name, timed,
 };
 use crate::facts::placement::{LevelBox, LevelMapKey};
 use crate::facts::{SceneFacts, Wanted};
@@ -45,7 +45,7 @@ impl Renderer {
             + self.gpu.take_readback_peak()
             + slot::differences_beside(facts)
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
-            + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes);
+            + self.geometry.in_use().map_or(0, Geometry::bytes);
         let report = self
             .watches_allocator
             .then(|| self.gpu.device.generate_allocator_report())
@@ -445,7 +445,7 @@ impl Renderer {
             let (Some(level_box), Some(offset), Some(geometry)) = (
                 boxes.get(key),
                 self.level_maps.offset(key),
-                self.geometry.as_ref(),
+                self.geometry.in_use(),
             ) else {
                 continue;
             };

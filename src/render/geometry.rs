@@ -1,4 +1,5 @@
-//! Meshes on the GPU: hierarchies and triangles of all meshes of a scene, one behind the other.
+//! Meshes on the GPU: hierarchies and triangles of all meshes of a scene, one behind the other in one buffer, which is kept for the next
+//! scene with the same meshes.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -20,7 +21,86 @@ pub(super) struct Place {
     pub(super) triangles: u32,
 }
 
-/// The meshes of one scene on the GPU; kept for the next scene with the same meshes.
+/// Most bytes that are kept for scenes with other meshes than those of the frame at work.
+const KEPT_BYTES: u64 = 256 << 20;
+
+/// Geometry of the scenes that were rendered last.
+#[derive(Debug, Default)]
+pub(super) struct GeometryCache {
+    /// One for each set of meshes; what was used last comes last.
+    kept: Vec<Geometry>,
+    /// Whether the last one is the geometry of the frame at work.
+    in_use: bool,
+    uploaded_bytes: u64,
+}
+
+impl GeometryCache {
+    /// Starts a frame that needs the geometry of `meshes`, if any. Of all other geometry that stays which was used last, as far as
+    /// `free_budget_bytes` go. Returns the bytes that stay so, and whether others had to go.
+    pub(super) fn begin_frame(
+        &mut self,
+        meshes: Option<&[Arc<Mesh>]>,
+        free_budget_bytes: u64,
+    ) -> (u64, bool) {
+        self.in_use = false;
+        let own = meshes.and_then(|meshes| self.kept.iter().position(|kept| kept.is_of(meshes)));
+        let own = own.map(|index| self.kept.remove(index));
+        let before = self.kept.len();
+        let budget_bytes = free_budget_bytes.min(KEPT_BYTES);
+        while self.bytes() > budget_bytes {
+            self.kept.remove(0);
+        }
+        let made_room = self.kept.len() < before;
+        let others_bytes = self.bytes();
+        self.kept.extend(own);
+        (others_bytes, made_room)
+    }
+
+    /// The geometry of `meshes`, for the frame at work; uploaded where it is not kept.
+    pub(super) fn hold(&mut self, gpu: &GpuContext, meshes: &[Arc<Mesh>]) -> &Geometry {
+        let kept = self.kept.iter().position(|kept| kept.is_of(meshes));
+        let geometry = match kept {
+            Some(index) => self.kept.remove(index),
+            None => {
+                let uploaded = Geometry::upload(gpu, meshes);
+                self.uploaded_bytes += uploaded.bytes();
+                uploaded
+            }
+        };
+        self.kept.push(geometry);
+        self.in_use = true;
+        &self.kept[self.kept.len() - 1]
+    }
+
+    /// The geometry of the frame at work, if it has any.
+    pub(super) fn in_use(&self) -> Option<&Geometry> {
+        self.kept.last().filter(|_| self.in_use)
+    }
+
+    /// Drops all geometry with this mesh in it.
+    pub(super) fn forget_mesh(&mut self, id: &str) {
+        self.in_use = false;
+        self.kept.retain(|kept| !kept.places.contains_key(id));
+    }
+
+    /// Drops all.
+    pub(super) fn clear(&mut self) {
+        self.in_use = false;
+        self.kept.clear();
+    }
+
+    /// Size of all that is kept.
+    pub(super) fn bytes(&self) -> u64 {
+        self.kept.iter().map(Geometry::bytes).sum()
+    }
+
+    /// Bytes that were uploaded since the start.
+    pub(super) fn uploaded_bytes(&self) -> u64 {
+        self.uploaded_bytes
+    }
+}
+
+/// The meshes of one scene on the GPU.
 #[derive(Debug)]
 pub(super) struct Geometry {
     pub(super) buffer: wgpu::Buffer,
@@ -29,7 +109,7 @@ pub(super) struct Geometry {
 
 impl Geometry {
     /// Uploads the distinct meshes, sorted by id.
-    pub(super) fn upload(gpu: &GpuContext, meshes: &[Arc<Mesh>]) -> Self {
+    fn upload(gpu: &GpuContext, meshes: &[Arc<Mesh>]) -> Self {
         let distinct: BTreeMap<&str, &Mesh> =
             meshes.iter().map(|m| (m.id.as_str(), m.as_ref())).collect();
         let mut words: Vec<[u32; 4]> = Vec::new();
@@ -67,7 +147,7 @@ impl Geometry {
     }
 
     /// Whether all these meshes, and no others, are here.
-    pub(super) fn holds(&self, meshes: &[Arc<Mesh>]) -> bool {
+    fn is_of(&self, meshes: &[Arc<Mesh>]) -> bool {
         meshes.iter().all(|m| self.places.contains_key(&m.id))
             && self
                 .places

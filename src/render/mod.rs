@@ -92,7 +92,7 @@ pub struct Renderer {
     kernels: KernelCache,
     level_maps: LevelMapCache,
     arena: Option<wgpu::Buffer>,
-    geometry: Option<geometry::Geometry>,
+    geometry: geometry::GeometryCache,
     memory_budget_bytes: u64,
     calibration: Calibration,
     /// Polls since the last frame.
@@ -139,7 +139,7 @@ impl Renderer {
             kernels: KernelCache::default(),
             level_maps: LevelMapCache::new(arena_bytes),
             arena: None,
-            geometry: None,
+            geometry: geometry::GeometryCache::default(),
             memory_budget_bytes: config.memory_budget_bytes(),
             calibration: config.calibration.clone().unwrap_or_default(),
             idle_polls: 0,
@@ -276,6 +276,17 @@ impl Renderer {
             let adapter = format!("{}, {}", stats.adapter.name, stats.adapter.driver);
             let calibrated = &self.calibration.adapter;
             stats.warnings.extend(tune::foreign(calibrated, &adapter));
+            stats.accuracy.get_or_insert_default().chosen = Some(chosen);
+        }
+        stats.time_ms.total = ms_since(started);
+        Ok(Frame {
+            width: run.width,
+            height: run.height,
+            layers: run.layers,
+            stats,
+        })
+    }
+
     /// The plan of a frame. Level maps of other scenes make way where they would not fit beside it: whether a frame is rendered does not
     /// depend on what is cached.
     fn plan_in_budget(&mut self, facts: &SceneFacts) -> Result<Plan, RenderError> {
@@ -288,17 +299,6 @@ impl Renderer {
         self.arena = None;
         self.bind_groups.clear();
         Ok(plan::plan_scene(facts, self)?)
-    }
-
-            stats.accuracy.get_or_insert_default().chosen = Some(chosen);
-        }
-        stats.time_ms.total = ms_since(started);
-        Ok(Frame {
-            width: run.width,
-            height: run.height,
-            layers: run.layers,
-            stats,
-        })
     }
 
     /// Runs a plan, within the budgets of memory and level maps.
@@ -316,7 +316,11 @@ impl Renderer {
             .map_err(|error| self.level_maps_over_budget(error))?;
         let free_budget_bytes = self.memory_budget_bytes.saturating_sub(plan.peak_bytes);
         self.bind_groups.begin_frame();
-        if self.pool.begin_frame(free_budget_bytes) {
+        let geometry = slot_name(Slot::Geometry);
+        let needs_geometry = plan.slots.iter().any(|slot| slot.name == geometry);
+        let meshes = needs_geometry.then_some(resolved.meshes.as_slice());
+        let (kept_bytes, dropped) = self.geometry.begin_frame(meshes, free_budget_bytes);
+        if self.pool.begin_frame(free_budget_bytes - kept_bytes) || dropped {
             self.bind_groups.clear();
         }
         self.idle_polls = 0;
@@ -330,7 +334,7 @@ impl Renderer {
             // Which buffers the device failed on is not known, so nothing that would outlive the frame is trusted.
             self.level_maps.clear();
             self.arena = None;
-            self.geometry = None;
+            self.geometry.clear();
             self.drop_buffers();
             self.gpu.forget_errors();
         }
@@ -353,7 +357,7 @@ impl Renderer {
     /// Frees what is cached for a mesh.
     pub fn forget_mesh(&mut self, id: &str) {
         self.level_maps.forget_mesh(id);
-        self.geometry = None;
+        self.geometry.forget_mesh(id);
         self.bind_groups.clear();
     }
 
@@ -369,15 +373,20 @@ impl Renderer {
         self.level_maps.stats()
     }
 
-    /// How often since the start a light was followed again because its narrow flux sums had wrapped.
-    pub fn wide_sum_reruns(&self) -> u64 {
-        self.wide_sum_reruns
-    }
     /// Kernels that were compiled since the start.
     pub fn kernels_compiled(&self) -> usize {
         self.kernels.compiled()
     }
 
+    /// Bytes of meshes that were uploaded since the start.
+    pub fn geometry_uploaded_bytes(&self) -> u64 {
+        self.geometry.uploaded_bytes()
+    }
+
+    /// How often since the start a light was followed again because its narrow flux sums had wrapped.
+    pub fn wide_sum_reruns(&self) -> u64 {
+        self.wide_sum_reruns
+    }
 
     /// How often since the start what comes after a light was recorded while the GPU was at work on it.
     pub fn recorded_ahead(&self) -> u64 {
@@ -420,7 +429,7 @@ impl Renderer {
     pub fn resident_bytes(&self) -> u64 {
         self.pool.free_bytes()
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
-            + self.geometry.as_ref().map_or(0, geometry::Geometry::bytes)
+            + self.geometry.bytes()
     }
 
     /// To be called now and then when there is nothing to do: lets the driver free what is no longer used.
