@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use caustica::facts::SceneFacts;
 use caustica::facts::placement::LevelMapKey;
+use caustica::facts::{SceneFacts, Wanted};
 use caustica::passes::{self, PassDesc};
 use caustica::plan::{self, Cached, Plan, PlanError};
 use caustica::scene::ResolvedScene;
@@ -150,21 +150,58 @@ fn a_full_scene_needs_every_pass() {
     assert!(plan.passes.iter().all(|pass| !pass.reason.is_empty()));
 }
 
+/// A pass is in where the scene wants it and something reads what it writes: the output, or a later pass that is in.
 #[test]
 fn every_pass_is_in_or_out_with_a_reason() {
-    for name in scene_files::names() {
-        let plan = planned(&scene_files::load(&name, &[]));
-        for pass in passes::ALL {
-            let is_in = names(&plan).contains(&pass.name);
-            assert_ne!(
-                is_in,
-                is_absent(&plan, pass.name),
-                "{} in {name}",
-                pass.name
-            );
+    let of = |resolved: &ResolvedScene| SceneFacts::with_warnings(resolved).unwrap();
+    let mut all: Vec<(String, SceneFacts)> = scene_files::names()
+        .into_iter()
+        .map(|name| (name.clone(), of(&scene_files::load(&name, &[]))))
+        .collect();
+    let mut level_maps = of(&scene_files::scene(pool()));
+    level_maps.wanted = Wanted::LevelMaps;
+    all.push(("the level maps of a pool".to_owned(), level_maps));
+    let (mut refused, mut unread) = (0, 0);
+    for (name, facts) in all {
+        let plan = plan::plan_scene(&facts, &FakeCache { full: false }).unwrap();
+        let is_in = |pass: &PassDesc| names(&plan).contains(&pass.name);
+        let awaited = plan::awaited(&facts);
+        for (index, pass) in passes::ALL.into_iter().enumerate() {
+            let context = format!("{} in {name}", pass.name);
+            let is_read = pass.writes.iter().any(|slot| {
+                let later = passes::ALL[index + 1..].iter().filter(|later| is_in(later));
+                let mut read =
+                    later.flat_map(|later| later.reads.iter().chain(later.reads_if_present));
+                awaited.contains(slot) || read.any(|read| read == slot)
+            });
+            let wanted = (pass.wanted)(&facts);
+            assert_eq!(is_in(pass), wanted.is_ok() && is_read, "{context}");
+            assert_ne!(is_in(pass), is_absent(&plan, pass.name), "{context}");
+            let reason = reason_of(&plan, pass.name);
+            match wanted {
+                Ok(wanted) if is_read => assert_eq!(reason, wanted, "{context}"),
+                Ok(_) => {
+                    assert!(
+                        reason.starts_with("nothing in this frame reads"),
+                        "{context}"
+                    );
+                    unread += 1;
+                }
+                Err(refusal) => {
+                    assert_eq!(reason, refusal, "{context}");
+                    refused += 1;
+                }
+            }
         }
-        assert!(plan.absent.iter().all(|pass| pass.reason.len() > 10));
+        let there = plan.passes.iter().map(|pass| &pass.reason);
+        let mut reasons = there.chain(plan.absent.iter().map(|pass| &pass.reason));
+        assert!(reasons.all(|reason| reason.len() > 10), "{name}");
+        // A pass that is in once runs in the order of the list.
+        let listed = passes::ALL.into_iter().filter(|pass| is_in(pass));
+        assert!(listed.map(|pass| pass.name).eq(names(&plan)), "{name}");
     }
+    // Both ways to be out were looked at.
+    assert!(refused > 0 && unread > 0, "{refused}, {unread}");
 }
 
 #[test]
