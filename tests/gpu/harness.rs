@@ -5,6 +5,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use caustica::config::RenderConfig;
 use caustica::frame::Frame;
+use caustica::reference::ReferenceSettings;
 use caustica::render::{RenderError, Renderer};
 use caustica::scene::{LayerName, ResolvedScene};
 use serde_json::Value;
@@ -107,6 +108,14 @@ pub(crate) fn layer(frame: &Frame, name: LayerName) -> Vec<[f64; 3]> {
     pixels
         .map(|p| std::array::from_fn(|c| f64::from(p[c.min(layer.channels - 1)])))
         .collect()
+}
+
+/// Settings of a reference map of the floor, to a relative error.
+pub(crate) fn truth_settings(target_error: f64) -> ReferenceSettings {
+    ReferenceSettings {
+        target_error: Some(target_error),
+        ..ReferenceSettings::default()
+    }
 }
 
 /// Largest |a − b| / |b| over two lists.

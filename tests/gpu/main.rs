@@ -46,5 +46,7 @@ mod splitting;
 mod study;
 mod symmetry;
 mod tiles;
+#[path = "../support/truths.rs"]
+mod truths;
 mod view;
 mod wide_sums;
