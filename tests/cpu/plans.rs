@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use caustica::facts::placement::LevelMapKey;
 use caustica::facts::{SceneFacts, Wanted};
-use caustica::passes::{self, PassDesc};
+use caustica::passes::{self, PassDesc, Repeat};
 use caustica::plan::{self, Cached, Plan, PlanError};
 use caustica::scene::ResolvedScene;
 use serde_json::{Value, json};
@@ -76,19 +76,33 @@ fn pool_with(changes: &[(&str, Value)]) -> Plan {
     planned(&scene_files::scene(scene))
 }
 
-const LEVEL_MAP_PASSES: [&str; 2] = ["level_map", "level_map_pyramid"];
 /// What places light on meshes by planes.
 const PLANE_PASSES: [&str; 3] = ["depth_profile", "planes", "volumetric"];
-const CAMERA_PASSES: [&str; 3] = ["camera_hits", "camera_irradiance", "shade"];
-const SUN_PASSES: [&str; 7] = [
-    "surface",
-    "beams",
-    "hits",
-    "deposit",
-    "split",
-    "landed",
-    "irradiance",
-];
+
+/// Names of the passes that run once for each of these.
+fn passes_of(repeats: &[Repeat]) -> Vec<&'static str> {
+    let all = passes::ALL.into_iter();
+    let found: Vec<&str> = all
+        .filter(|pass| repeats.contains(&pass.repeat))
+        .map(|pass| pass.name)
+        .collect();
+    assert!(!found.is_empty(), "no pass runs for {repeats:?}");
+    found
+}
+
+fn level_map_passes() -> Vec<&'static str> {
+    passes_of(&[Repeat::LevelMap])
+}
+
+/// What follows lights, and compares what came of them.
+fn light_passes() -> Vec<&'static str> {
+    passes_of(&[
+        Repeat::Light,
+        Repeat::FineLight,
+        Repeat::CoarseLight,
+        Repeat::Frame,
+    ])
+}
 
 fn snapshot(name: &str) -> PathBuf {
     scene_files::folder()
@@ -226,7 +240,7 @@ fn one_channel_takes_a_third_of_the_flux_sums() {
 #[test]
 fn without_meshes_there_are_no_level_maps() {
     let plan = pool_with(&[("objects", json!([]))]);
-    for pass in LEVEL_MAP_PASSES {
+    for pass in level_map_passes() {
         assert!(is_absent(&plan, pass), "{pass}");
     }
     assert!(is_absent(&plan, "split"));
@@ -240,7 +254,7 @@ fn without_meshes_there_are_no_level_maps() {
 #[test]
 fn cached_level_maps_are_not_built_again() {
     let plan = planned_with(&scene_files::scene(pool()), true);
-    for pass in LEVEL_MAP_PASSES {
+    for pass in level_map_passes() {
         assert!(is_absent(&plan, pass), "{pass}");
     }
     assert!(names(&plan).contains(&"split"));
@@ -257,7 +271,7 @@ fn an_irradiance_map_needs_no_camera() {
         "output",
         json!({ "kind": "irradiance_map", "receiver": "floor" }),
     )]);
-    for pass in CAMERA_PASSES {
+    for pass in passes_of(&[Repeat::Band]) {
         assert!(is_absent(&plan, pass), "{pass}");
     }
 }
@@ -265,7 +279,7 @@ fn an_irradiance_map_needs_no_camera() {
 #[test]
 fn nothing_under_water_means_no_caustics() {
     let plan = planned(&scene_files::load("dry", &[]));
-    for pass in SUN_PASSES.iter().chain(&LEVEL_MAP_PASSES) {
+    for pass in light_passes().into_iter().chain(level_map_passes()) {
         assert!(is_absent(&plan, pass), "{pass}");
     }
 }
@@ -276,7 +290,7 @@ fn no_sun_means_no_caustics() {
         let sun =
             json!([{ "kind": "sun", "elevation_deg": elevation, "irradiance_w_m2": [1, 1, 1] }]);
         let plan = pool_with(&[("lights", sun)]);
-        for pass in SUN_PASSES.iter().chain(&LEVEL_MAP_PASSES) {
+        for pass in light_passes().into_iter().chain(level_map_passes()) {
             assert!(is_absent(&plan, pass), "{pass} at {elevation}");
         }
     }

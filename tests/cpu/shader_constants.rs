@@ -3,7 +3,7 @@
 use caustica::facts::{MOST_LIGHTS, SceneFacts};
 use caustica::gpu::shader::Module;
 use caustica::passes::camera_hits::MARCH_UNFINISHED;
-use caustica::passes::desc::Run;
+use caustica::passes::desc::{Run, Step};
 use caustica::passes::maps::{self, MapLayout};
 use caustica::passes::{
     self, Groups, PassDesc, Repeat, Work, depth_profile, estimate, landed, level_map, slot, term,
@@ -297,38 +297,43 @@ fn sums_over_texels_cover_all_of_them() {
     }
 }
 
-#[test]
-fn every_entry_point_is_run_by_a_step() {
+/// What a pass runs in a scene with everything in it.
+pub(crate) fn steps_of(pass: &PassDesc) -> Vec<Step> {
     let facts = facts();
     let mut level_box = facts.lights[0].boxes[0].clone().unwrap();
     level_box.key.layers = 2;
+    let run = match pass.repeat {
+        Repeat::LevelMap => Run::LevelMap {
+            level_box: &level_box,
+            arena_offset: 0,
+            first_triangle: 0,
+            triangles: 12,
+        },
+        Repeat::Light | Repeat::FineLight => Run::Light {
+            index: 0,
+            wide_sums: false,
+        },
+        Repeat::CoarseLight => Run::CoarseLight {
+            index: 0,
+            wide_sums: false,
+            fine: &facts,
+        },
+        Repeat::Frame => Run::Frame,
+        Repeat::Band => Run::Band {
+            first_row: 0,
+            rows: 67,
+            offset: [0.0; 2],
+            sample_index: 0,
+        },
+    };
+    (pass.steps)(&facts, run)
+}
+
+#[test]
+fn every_entry_point_is_run_by_a_step() {
     for pass in passes::ALL {
-        let run = match pass.repeat {
-            Repeat::LevelMap => Run::LevelMap {
-                level_box: &level_box,
-                arena_offset: 0,
-                first_triangle: 0,
-                triangles: 12,
-            },
-            Repeat::Light | Repeat::FineLight => Run::Light {
-                index: 0,
-                wide_sums: false,
-            },
-            Repeat::CoarseLight => Run::CoarseLight {
-                index: 0,
-                wide_sums: false,
-                fine: &facts,
-            },
-            Repeat::Frame => Run::Frame,
-            Repeat::Band => Run::Band {
-                first_row: 0,
-                rows: 67,
-                offset: [0.0; 2],
-                sample_index: 0,
-            },
-        };
         let module = module(&format!("passes/{}.wgsl", pass.name));
-        let steps = (pass.steps)(&facts, run);
+        let steps = steps_of(pass);
         for entry in &module.ir.entry_points {
             let run = steps.iter().any(|step| step.entry == entry.name);
             let drawn = entry.stage == naga::ShaderStage::Fragment;

@@ -10,22 +10,10 @@ use caustica::physics::registry;
 use wgpu::naga;
 use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
 
+use super::shader_constants::steps_of;
+
 /// Storage buffers that every WebGPU device can bind to one stage.
 const BASELINE_STORAGE_BUFFERS: usize = 8;
-/// Uniform variables that steps bring along.
-const UNIFORMS: [&str; 11] = [
-    "air_lights",
-    "coarse_light",
-    "estimate",
-    "level_map_view",
-    "light",
-    "planes",
-    "resolve",
-    "span",
-    "split",
-    "unfollowed",
-    "view",
-];
 /// Textures that the executor draws into.
 const TEXTURES: [&str; 7] = [
     "front_depth",
@@ -247,6 +235,9 @@ fn passes_bind_what_they_declare() {
         let module = module(&path);
         let info = info_of(&module);
         let (slots, written) = allowed(pass);
+        let steps = steps_of(pass);
+        let brought = steps.iter().flat_map(|step| &step.uniforms);
+        let uniforms: BTreeSet<&str> = brought.map(|(name, _)| *name).collect();
         let mut bound_anywhere = BTreeSet::new();
         for (index, entry) in module.ir.entry_points.iter().enumerate() {
             let context = format!("{} in {path}", entry.name);
@@ -255,7 +246,7 @@ fn passes_bind_what_they_declare() {
             for bound in &bindings {
                 let name = bound.name.as_str();
                 match bound.access {
-                    Access::Uniform(_) => assert!(UNIFORMS.contains(&name), "{name} of {context}"),
+                    Access::Uniform(_) => assert!(uniforms.contains(name), "{name} of {context}"),
                     Access::Texture(_) => assert!(TEXTURES.contains(&name), "{name} of {context}"),
                     Access::StorageRead | Access::StorageWrite => {
                         storage += 1;
