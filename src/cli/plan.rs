@@ -15,6 +15,7 @@ use crate::plan::Plan;
 use crate::plan::{NothingCached, Wanted, plan_scene};
 use crate::render::{RenderError, Renderer};
 use crate::stats::ChosenDials;
+use crate::tuning::chooses_dials;
 
 /// What to plan.
 #[derive(Clone, Debug, Args)]
@@ -35,7 +36,7 @@ pub struct PlanArgs {
 pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let scene = scene_file::load(&args.scene, None, limits)?;
     let quality = &scene.resolved.scene.quality;
-    let plan = if quality.target_error.is_some() || quality.time_budget_ms.is_some() {
+    let plan = if chooses_dials(quality) {
         // Dials are chosen by looking at the scene.
         Renderer::new(config)?.plan(&scene.resolved, &CancellationToken::new())?
     } else {

@@ -226,7 +226,7 @@ impl Renderer {
         let asked = resolved;
         let resolved = tuned.as_ref().map_or(asked, |(scene, _)| scene);
         let facts = methods::facts_with_warnings(resolved)?;
-        let plan = plan::plan_scene(&facts, Wanted::Frame, self)?;
+        let plan = self.plan_in_budget(&facts, Wanted::Frame)?;
         let plan_ms = ms_since(started);
         let cache_before = self.level_maps.stats();
         let ran = Instant::now();
@@ -309,6 +309,24 @@ impl Renderer {
         let facts = methods::facts(resolved)?;
         let plan = plan::plan_scene(&facts, Wanted::Points, self)?;
         Ok(self.run(resolved, &facts, &plan, cancel)?.points)
+    }
+
+    /// The plan of a frame. Level maps of other scenes make way where they would not fit beside it: whether a frame is rendered does not
+    /// depend on what is cached.
+    fn plan_in_budget(
+        &mut self,
+        facts: &SceneFacts,
+        wanted: Wanted,
+    ) -> Result<FramePlan, RenderError> {
+        let plan = plan::plan_scene(facts, wanted, self)?;
+        let is_over = plan.report.peak_bytes > self.memory_budget_bytes;
+        if !is_over || self.arena.is_none() || !plan::level_maps(facts).is_empty() {
+            return Ok(plan);
+        }
+        self.level_maps.clear();
+        self.arena = None;
+        self.bind_groups.clear();
+        Ok(plan::plan_scene(facts, wanted, self)?)
     }
 
     /// Runs a plan, within the budgets of memory and level maps.

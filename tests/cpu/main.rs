@@ -64,5 +64,7 @@ mod teapot;
 mod tone;
 mod truth;
 mod truth_disk;
+#[path = "../support/truths.rs"]
+mod truths;
 mod tuning;
 mod waves;

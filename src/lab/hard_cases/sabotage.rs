@@ -91,6 +91,10 @@ impl RenderBackend for Saboteur {
         self.renderer.adapter()
     }
 
+    fn dial_basis(&self) -> String {
+        self.renderer.dial_basis()
+    }
+
     fn plan(
         &mut self,
         resolved: &ResolvedScene,
