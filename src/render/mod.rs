@@ -32,7 +32,6 @@ use crate::plan::{self, Cached, FramePlan, Plan, Wanted};
 use crate::scene::{ResolvedScene, SceneError};
 use crate::stages::objects::GEOMETRY;
 use crate::stages::points::Point;
-use crate::stages::shaders;
 use crate::stats::{
     AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
     TimeStats, Warning,
@@ -112,7 +111,7 @@ impl Renderer {
     /// # Errors
     /// When no adapter fits, or the device cannot be opened.
     pub fn new(config: &RenderConfig) -> Result<Self, GpuError> {
-        Self::with_shaders(config, shaders::embedded())
+        Self::with_shaders(config, methods::embedded())
     }
 
     /// The same with shader sources of one's own: for tests that break a formula on purpose.

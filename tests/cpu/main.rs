@@ -29,6 +29,7 @@ mod mesh_hierarchy;
 mod mesh_obj;
 mod mesh_shapes;
 mod mesh_store;
+mod methods;
 mod metrics;
 mod mutants;
 mod physics;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use caustica::lab::hard_cases::{self, Family};
-use caustica::stages::shaders;
+use caustica::methods;
 
 use super::shader_plants::Red;
 use super::{plants, shader_plants};
@@ -21,7 +21,7 @@ fn every_plant_stands_in_its_file_once_and_changes_it() {
         assert_eq!(count, 1, "{} in {}", plant.from, plant.file);
         assert_ne!(plant.from, plant.to, "{}", plant.what);
     }
-    let sources = shaders::embedded();
+    let sources = methods::embedded();
     for plant in shader_plants::ALL {
         let source = sources
             .text(plant.file)

@@ -592,7 +592,7 @@ fn planes_are_in_where_they_are_asked_for() {
         assert!(!names(&hit).contains(&pass), "{pass}");
     }
     assert_eq!(bytes_of(&hit, "plane_lists"), None);
-    let quality = json!({ "placement": "planes", "planes": 17 });
+    let quality = json!({ "method": { "kind": "planes", "planes": 17 } });
     let planes = pool_with(&[("quality", quality)]);
     assert!(names(&planes).contains(&"depth_profile"));
     assert_eq!(
@@ -604,7 +604,7 @@ fn planes_are_in_where_they_are_asked_for() {
         "all 17 planes are used"
     );
     assert!(!names(&planes).contains(&"slice_deposit"));
-    let quality = json!({ "placement": "planes", "planes": 17, "slicing": "smart" });
+    let quality = json!({ "method": { "kind": "planes", "planes": 17, "slicing": "smart" } });
     let smart = pool_with(&[("quality", quality)]);
     let reason = reason_of(&smart, "depth_profile");
     assert_eq!(
@@ -612,7 +612,7 @@ fn planes_are_in_where_they_are_asked_for() {
         "of 17 planes those without a surface near them are left out"
     );
     let dry = pool_with(&[
-        ("quality", json!({ "placement": "planes" })),
+        ("quality", json!({ "method": "planes" })),
         ("objects", json!([])),
     ]);
     assert_eq!(reason_of(&dry, "plane_deposit"), "no object is under water");
@@ -621,7 +621,8 @@ fn planes_are_in_where_they_are_asked_for() {
 #[test]
 fn slices_take_memory_for_each_plane_and_level_maps_do_not() {
     let with = |method: &str, planes: u32| {
-        let quality = json!({ "method": method, "placement": "planes", "planes": planes, "level_map_texels": 128 });
+        let quality =
+            json!({ "method": { "kind": method, "planes": planes }, "level_map_texels": 128 });
         pool_with(&[("quality", quality)])
     };
     let image = 4 * 128 * 128;
@@ -638,7 +639,7 @@ fn slices_take_memory_for_each_plane_and_level_maps_do_not() {
     }
     let growth = with("volumetric", 100).peak_bytes - with("volumetric", 50).peak_bytes;
     assert_eq!(growth, 50 * image);
-    let growth = with("level_map", 100).peak_bytes - with("level_map", 50).peak_bytes;
+    let growth = with("planes", 100).peak_bytes - with("planes", 50).peak_bytes;
     assert_eq!(growth, 50 * 2 * 4, "two words of the list for each plane");
 }
 
@@ -652,7 +653,7 @@ fn planes_say_what_they_leave_out() {
         { "mesh": "box.obj", "translation_m": [0, -1, 0] },
         { "mesh": "box.obj", "translation_m": [2, -1, 0] }
     ]);
-    let planes = json!({ "placement": "planes", "layers": 2 });
+    let planes = json!({ "method": "planes", "layers": 2 });
     let found = codes(&[("objects", two.clone()), ("quality", planes)]);
     assert!(found.contains(&"objects_cast_no_shadows_on_objects".to_owned()));
     assert!(found.contains(&"further_layers_stay_dark".to_owned()));
@@ -668,7 +669,7 @@ fn sums_of_planes_are_wide() {
     let mut scene = pool();
     for (quality, wide) in [
         (json!({}), false),
-        (json!({ "placement": "planes" }), true),
+        (json!({ "method": "planes" }), true),
         (json!({ "method": "volumetric" }), true),
     ] {
         scene["quality"] = quality;

@@ -9,9 +9,9 @@ use caustica::config::{Limits, RenderConfig};
 use caustica::gpu::shader::ShaderSources;
 use caustica::gpu_queue::{GpuQueue, QueueSettings, RenderBackend};
 use caustica::http::{AppState, app};
+use caustica::methods;
 use caustica::physics::registry;
 use caustica::render::{Renderer, twin_error};
-use caustica::stages::shaders;
 use serde_json::{Value, json};
 use tower::ServiceExt as _;
 
@@ -91,7 +91,7 @@ const BROKEN: [(&str, &str, &str); 10] = [
 
 fn broken(index: usize) -> ShaderSources {
     let (file, from, to) = BROKEN[index];
-    shaders::embedded()
+    methods::embedded()
         .with_replacement(file, from, to)
         .unwrap_or_else(|| panic!("`{from}` is not in {file}"))
 }
@@ -121,7 +121,7 @@ fn every_broken_formula_is_found() {
 #[test]
 fn a_formula_that_gives_no_number_is_found() {
     let renderer = renderer();
-    let sources = shaders::embedded()
+    let sources = methods::embedded()
         .with_replacement(
             "lib/attenuation.wgsl",
             "return exp(-c_per_m * length_m);",
@@ -137,7 +137,7 @@ fn a_formula_that_gives_no_number_is_found() {
 
 #[test]
 fn a_replacement_that_is_not_there_is_refused() {
-    let sources = shaders::embedded();
+    let sources = methods::embedded();
     assert!(
         sources
             .clone()
