@@ -97,6 +97,12 @@ impl WaterSurface {
         Self { components }
     }
 
+    /// Whether the bounds of heights and slopes and the shortest wave depend on time.
+    pub fn bounds_change_with_time(&self) -> bool {
+        // Sines: their phases do, their amplitudes and wavelengths do not.
+        false
+    }
+
     /// Largest |height| that the components can add up to, m.
     pub fn max_height_m(&self) -> f64 {
         self.components.iter().map(|c| c.amplitude_m).sum()
