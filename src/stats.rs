@@ -237,7 +237,7 @@ impl Warning {
         "mesh_mtl_ignored",
         "pixels_along_water",
         "pixels_outside_map",
-        "planes_light_the_first_layer",
+        "further_layers_stay_dark",
         "png_clipped",
         "png_layers_left_out",
         "png_negative",

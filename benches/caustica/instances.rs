@@ -4,9 +4,9 @@ use std::error::Error;
 
 use caustica::assets::MeshStore;
 use caustica::config::{Limits, RenderConfig};
-use caustica::passes::shaders;
 use caustica::render::Renderer;
 use caustica::scene::{ResolvedScene, Scene, resolve};
+use caustica::stages::shaders;
 use caustica::stats::Stats;
 use serde_json::{Value, json};
 use tokio_util::sync::CancellationToken;

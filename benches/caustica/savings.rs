@@ -4,9 +4,9 @@ use std::error::Error;
 use std::time::Instant;
 
 use caustica::config::RenderConfig;
-use caustica::passes::shaders;
 use caustica::render::Renderer;
 use caustica::scene::ResolvedScene;
+use caustica::stages::shaders;
 use tokio_util::sync::CancellationToken;
 
 use crate::Effort;

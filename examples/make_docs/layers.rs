@@ -111,7 +111,7 @@ pub(crate) fn chapter(renderer: &RefCell<Renderer>) -> Result<String, Box<dyn Er
             let right: Vec<f64> = of().flat_map(|at| truth.irradiance[at]).collect();
             Ok(relative_l1(&seen, &right)?)
         };
-        let facts = caustica::facts::SceneFacts::of(scene)?;
+        let facts = caustica::methods::facts(scene)?;
         let maps = caustica::plan::level_maps(&facts);
         let memory = &frame.stats.memory;
         let _ = writeln!(

@@ -8,7 +8,6 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use caustica::accuracy::LinearImage;
-use caustica::facts::SceneFacts;
 use caustica::lab::experiment::{Way, scene};
 use caustica::lab::study::error_images::error_images;
 use caustica::lab::study::study::{
@@ -227,7 +226,7 @@ fn sheet(
             height: truth.height,
             rgb: truth.irradiance.clone(),
         },
-        white_w_m2: std::f64::consts::PI * SceneFacts::of(base)?.lights.white_radiance,
+        white_w_m2: std::f64::consts::PI * caustica::methods::facts(base)?.lights.white_radiance,
         points: vec![images],
     };
     Ok(error_images(&study, &images, 0)?)

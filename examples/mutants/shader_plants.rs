@@ -212,7 +212,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     },
     ShaderPlant {
         family: "water",
-        file: "passes/unfollowed.wgsl",
+        file: "stages/unfollowed.wgsl",
         from: "if gap < 0.0 { return true; }",
         to: "if gap < -0.2 { return true; }",
         red: Red::Only(&["light_that_leaves_the_water_again"]),
@@ -220,7 +220,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     },
     ShaderPlant {
         family: "water",
-        file: "passes/unfollowed.wgsl",
+        file: "stages/unfollowed.wgsl",
         from: "note_unfollowed(TERM_TURNED, -signed_unit_flux(",
         to: "note_unfollowed(TERM_TURNED, -0.5 * signed_unit_flux(",
         red: Red::Only(&["slopes_that_look_away"]),
@@ -252,7 +252,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     },
     ShaderPlant {
         family: "camera",
-        file: "passes/camera_hits.wgsl",
+        file: "stages/camera_hits.wgsl",
         from: "const START_M: f32 = -2.0 * SURFACE_TOLERANCE_M;",
         to: "const START_M: f32 = 1e-4;",
         red: Red::Only(&["a_view_of_a_floor_at_depth_0"]),
@@ -268,7 +268,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     },
     ShaderPlant {
         family: "camera",
-        file: "passes/camera_hits.wgsl",
+        file: "stages/camera_hits.wgsl",
         from: "(1.0 - reflectance) / (view.ior * view.ior)",
         to: "(1.0 - reflectance) / view.ior",
         red: Red::Only(&[
@@ -285,7 +285,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     },
     ShaderPlant {
         family: "camera",
-        file: "passes/camera_hits.wgsl",
+        file: "stages/camera_hits.wgsl",
         from: "if over_water(ray.origin) >= 0.0 {",
         to: "if over_water(ray.origin) >= -2e-5 {",
         red: Red::Only(&["a_micrometre_under_the_surface", "on_a_wave"]),

@@ -5,8 +5,8 @@ use std::error::Error;
 use caustica::config::RenderConfig;
 use caustica::gpu::shader::ShaderSources;
 use caustica::lab::hard_cases::{self, Case, Family, Settings, Truths};
-use caustica::passes::shaders;
 use caustica::render::Renderer;
+use caustica::stages::shaders;
 
 use super::shader_plants::ShaderPlant;
 

@@ -3,7 +3,6 @@
 use std::sync::{Arc, OnceLock};
 
 use caustica::config::Limits;
-use caustica::facts::SceneFacts;
 use caustica::mesh::{Mesh, obj};
 use caustica::plan::{self, NothingCached, WarmCache};
 use caustica::scene::{Scene, SceneError, resolve};
@@ -22,7 +21,7 @@ pub(crate) fn check(bytes: &[u8]) {
         Ok(resolved) => resolved,
         Err(error) => return says_why(&error),
     };
-    let facts = match SceneFacts::of(&resolved) {
+    let facts = match caustica::methods::facts(&resolved) {
         Ok(facts) => facts,
         Err(error) => return says_why(&error),
     };
@@ -37,10 +36,10 @@ pub(crate) fn check(bytes: &[u8]) {
     ];
     for plan in planned {
         let plan = plan.unwrap_or_else(|error| panic!("{error}"));
-        let held = plan.slots.iter().map(|slot| slot.bytes).max();
-        assert!(plan.peak_bytes >= held.unwrap_or_default());
-        let reasons = plan.passes.iter().map(|pass| &pass.reason);
-        let absences = plan.absent.iter().map(|pass| &pass.reason);
+        let held = plan.report.slots.iter().map(|slot| slot.bytes).max();
+        assert!(plan.report.peak_bytes >= held.unwrap_or_default());
+        let reasons = plan.report.passes.iter().map(|pass| &pass.reason);
+        let absences = plan.report.absent.iter().map(|pass| &pass.reason);
         assert!(reasons.chain(absences).all(|reason| !reason.is_empty()));
     }
 }

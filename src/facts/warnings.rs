@@ -206,7 +206,7 @@ fn left_out_by_method(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning>
     let method = &facts.method;
     if wet > 1 && method.leaves_out.shadows_on_objects {
         let found = warning(
-            "planes_ignore_other_objects",
+            "objects_cast_no_shadows_on_objects",
             format!(
                 "method {} knows nothing of other objects: light that one object blocks still reaches the others",
                 method.name
@@ -217,7 +217,7 @@ fn left_out_by_method(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning>
     }
     if wet > 0 && facts.quality.layers > 1 && method.leaves_out.further_layers {
         all.push(warning(
-            "planes_light_the_first_layer",
+            "further_layers_stay_dark",
             format!(
                 "method {} lights what the light direction sees first; further layers stay dark",
                 method.name

@@ -11,6 +11,7 @@ use super::scope::{Program, Scope};
 use super::slot::{Origin, SlotDesc};
 
 /// Passes and their memory, in the order they run.
+#[derive(Debug)]
 pub struct Planned<P: Program> {
     /// Passes that run, with the reason for each.
     pub passes: Vec<(&'static PassDesc<P>, String)>,
@@ -36,6 +37,7 @@ pub enum Allocation {
 }
 
 /// A slot that is held.
+#[derive(Debug)]
 pub struct PlannedSlot<P: Program> {
     /// The slot.
     pub slot: &'static SlotDesc<P>,

@@ -38,6 +38,16 @@ pub struct Method {
     pub facts: fn(&Quality) -> MethodFacts,
     /// Whether it can make what a scene asks for, or a reason that a reader understands.
     pub supports: fn(&SceneFacts) -> Result<(), String>,
+    /// What the conformance suite (`tests/gpu/conformance.rs`) holds it to.
+    pub conformance: Conformance,
+}
+
+/// What the conformance suite holds a method to.
+pub struct Conformance {
+    /// Largest relative L1 error on the floor of `scenes/sine_pool.json` with 256 water cells.
+    pub sine_pool_error_at_256: f64,
+    /// Cases that it skips, each with the reason.
+    pub skips: &'static [(&'static str, &'static str)],
 }
 
 impl std::fmt::Debug for Method {
@@ -47,6 +57,11 @@ impl std::fmt::Debug for Method {
 }
 
 impl Method {
+    /// What the stages need to know of it, with all dials as they are unless set.
+    pub fn facts_of_default(&self) -> MethodFacts {
+        (self.facts)(&Quality::default())
+    }
+
     /// All passes of a frame with this method, in the order they run.
     pub fn pipeline(&self) -> Vec<&'static Pass> {
         let own = |in_picture: bool| {

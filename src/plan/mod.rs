@@ -73,6 +73,7 @@ pub struct PlannedSlot {
 }
 
 /// A plan as the executor runs it, with what it reads like.
+#[derive(Debug)]
 pub struct FramePlan {
     /// How much of the frame it makes.
     pub wanted: Wanted,
@@ -91,6 +92,8 @@ pub enum Wanted {
     Estimate,
     /// Nothing but the level maps, for frames to come.
     LevelMaps,
+    /// Nothing but the points: what the pixels see, or where the texels of the map lie.
+    Points,
 }
 
 /// What is already on the GPU.
@@ -138,8 +141,10 @@ impl Cached for WarmCache {
 
 /// The slots that hold what is wanted of a scene's output. The energy account is awaited in its own right, wherever light is followed.
 pub fn awaited(facts: &SceneFacts, wanted: Wanted) -> BTreeSet<&'static Slot> {
-    if wanted == Wanted::LevelMaps {
-        return BTreeSet::from([&LEVEL_MAPS]);
+    match wanted {
+        Wanted::LevelMaps => return BTreeSet::from([&LEVEL_MAPS]),
+        Wanted::Points => return BTreeSet::from([&POINTS]),
+        Wanted::Frame | Wanted::Estimate => {}
     }
     let mut all = BTreeSet::new();
     if !facts.lights.beam_sets.is_empty() {
@@ -282,6 +287,7 @@ fn shares(graph: &Planned<Caustica>, held: &HeldSlot<Caustica>) -> Option<String
 fn besides(facts: &SceneFacts, wanted: Wanted) -> Vec<PlannedSlot> {
     let readback = match wanted {
         Wanted::LevelMaps => 0,
+        Wanted::Points => POINTS.bytes(facts),
         Wanted::Frame | Wanted::Estimate => readback_bytes(facts),
     };
     [

@@ -20,7 +20,7 @@ use crate::plan::{self, FramePlan, Wanted};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stages::irradiance::IRRADIANCE;
 use crate::stages::level_map::LevelMapRun;
-use crate::stages::points::{band_rows, size};
+use crate::stages::points::{POINTS, Point, band_rows, size};
 use crate::stages::reference_planes::PLANE_COUNTS;
 use crate::stages::shade::RADIANCE;
 use crate::stages::sums::ENERGY;
@@ -87,6 +87,7 @@ impl Renderer {
             layers: BTreeMap::new(),
             energy,
             planes: collect::planes(facts, &sums.plane_counts),
+            points: Vec::new(),
             accuracy: None,
             warnings,
             time_ms,
@@ -94,7 +95,9 @@ impl Renderer {
             level_maps_built: u32::try_from(job.missing.len()).unwrap_or(u32::MAX),
             allocated_bytes: None,
         };
-        if plan.wanted == Wanted::Frame {
+        if plan.wanted == Wanted::Points {
+            self.run_points(job, slots, &mut result)?;
+        } else if plan.wanted == Wanted::Frame {
             let at_points = facts.method.product == Product::PointIrradiance;
             if facts.output.camera.is_some() || at_points {
                 self.run_bands(job, slots, &mut result)?;
@@ -324,6 +327,36 @@ impl Renderer {
         let (layers, warnings) = view.finish()?;
         result.layers = layers;
         result.warnings.extend(warnings);
+        Ok(())
+    }
+
+    /// Fills the points band by band, and reads them.
+    fn run_points(
+        &mut self,
+        job: Job<'_>,
+        slots: &FrameSlots,
+        result: &mut RunResult,
+    ) -> Result<(), RenderError> {
+        let Some([width, height]) = size(job.facts) else {
+            return Ok(());
+        };
+        (result.width, result.height) = (width, height);
+        let step = band_rows(width, height);
+        for first_row in (0..height).step_by(step as usize) {
+            let band = BandRun {
+                first_row,
+                rows: step.min(height - first_row),
+                offset: [0.0; 2],
+                sample_index: 0,
+            };
+            let started = Recording::start(&result.time_ms);
+            let mut encoder = self.encoder("points");
+            self.record_band(&mut encoder, job, band, slots, &mut result.time_ms)?;
+            self.submit(encoder, started, &mut result.time_ms)?;
+            let bytes = size_of::<Point>() as u64 * u64::from(width) * u64::from(band.rows);
+            let read: Vec<Point> = readback::read(&self.gpu, slots.buffer(&POINTS).0, bytes)?;
+            result.points.extend(read);
+        }
         Ok(())
     }
 

@@ -30,6 +30,7 @@ use crate::graph::{PlanError, Scope};
 use crate::plan::{self, Cached, FramePlan, Plan, Wanted};
 use crate::scene::{ResolvedScene, SceneError};
 use crate::stages::objects::GEOMETRY;
+use crate::stages::points::Point;
 use crate::stages::shaders;
 use crate::stats::{
     AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
@@ -318,6 +319,22 @@ impl Renderer {
         })
     }
 
+    /// What the pixels of a view see, or where the texels of a map lie, row by row; in local coordinates, around
+    /// [`SceneFacts::origin_m`].
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    pub fn points(
+        &mut self,
+        resolved: &ResolvedScene,
+        cancel: &CancellationToken,
+    ) -> Result<Vec<Point>, RenderError> {
+        self.gpu.check()?;
+        let facts = methods::facts(resolved)?;
+        let plan = plan::plan_scene(&facts, Wanted::Points, self)?;
+        Ok(self.run(resolved, &facts, &plan, cancel)?.points)
+    }
+
     /// Runs a plan, within the budgets of memory and level maps.
     fn run(
         &mut self,
@@ -529,6 +546,7 @@ struct RunResult {
     layers: BTreeMap<crate::scene::LayerName, crate::frame::Layer>,
     energy: Vec<crate::stats::EnergyAccount>,
     planes: Vec<crate::stats::PlaneStats>,
+    points: Vec<Point>,
     accuracy: Option<AccuracyStats>,
     warnings: Vec<Warning>,
     time_ms: TimeStats,

@@ -285,6 +285,7 @@ fn a_plan_reads_well() {
             reason: "no objects".to_owned(),
         }],
         slots: vec![PlannedSlot {
+            shares: None,
             name: "water".to_owned(),
             bytes: 3 << 20,
             holds: "height, m".to_owned(),

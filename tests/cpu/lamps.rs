@@ -76,7 +76,7 @@ fn a_point_light_is_read_strictly_and_checked() {
 }
 
 fn facts(scene: Value) -> SceneFacts {
-    SceneFacts::with_warnings(&scene_files::scene(scene)).unwrap()
+    caustica::methods::facts_with_warnings(&scene_files::scene(scene)).unwrap()
 }
 
 #[test]

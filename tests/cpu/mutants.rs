@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use caustica::lab::hard_cases;
-use caustica::passes::shaders;
+use caustica::stages::shaders;
 
 use super::shader_plants::Red;
 use super::{plants, shader_plants};

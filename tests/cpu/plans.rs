@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use caustica::facts::SceneFacts;
 use caustica::facts::placement::LevelMapKey;
-use caustica::passes::{self, PassDesc};
-use caustica::plan::{self, Cached, Plan, PlanError, Wanted};
+use caustica::graph::{Allocation, BeamSetRun, PlanError};
+use caustica::methods;
+use caustica::plan::{self, Cached, Plan, Wanted};
 use caustica::scene::ResolvedScene;
+use caustica::stages::{self, Pass, Run};
 use serde_json::{Value, json};
 
 use super::scene_files;
@@ -38,8 +39,14 @@ fn planned(resolved: &ResolvedScene) -> Plan {
 }
 
 fn planned_with(resolved: &ResolvedScene, full: bool) -> Plan {
-    let facts = SceneFacts::with_warnings(resolved).unwrap();
-    plan::plan_scene(&facts, Wanted::Frame, &FakeCache { full }).unwrap()
+    let facts = methods::facts_with_warnings(resolved).unwrap();
+    let plan = plan::plan_scene(&facts, Wanted::Frame, &FakeCache { full }).unwrap();
+    plan.report
+}
+
+/// The passes of the default method, in order.
+fn default_passes() -> Vec<&'static Pass> {
+    methods::ALL[0].pipeline()
 }
 
 fn names(plan: &Plan) -> Vec<&str> {
@@ -78,7 +85,7 @@ fn pool_with(changes: &[(&str, Value)]) -> Plan {
 
 const LEVEL_MAP_PASSES: [&str; 2] = ["level_map", "level_map_pyramid"];
 /// What places light on meshes by planes.
-const PLANE_PASSES: [&str; 3] = ["depth_profile", "planes", "volumetric"];
+const PLANE_PASSES: [&str; 2] = ["depth_profile", "plane_deposit"];
 const CAMERA_PASSES: [&str; 3] = ["camera_hits", "camera_irradiance", "shade"];
 const SUN_PASSES: [&str; 7] = [
     "surface",
@@ -139,14 +146,15 @@ fn a_full_scene_needs_every_pass() {
         ("quality", json!({ "estimate_error": true })),
         ("water", steep),
     ]);
-    let all: Vec<&str> = passes::ALL.iter().map(|pass| pass.name).collect();
+    let all: Vec<&str> = default_passes().iter().map(|pass| pass.name).collect();
+    // Points are what the pixels see.
     let needed: Vec<&str> = all
         .into_iter()
-        .filter(|name| !PLANE_PASSES.contains(name))
+        .filter(|name| *name != "texel_points")
         .collect();
     assert_eq!(names(&plan), needed);
     let absent: Vec<&str> = plan.absent.iter().map(|pass| pass.name.as_str()).collect();
-    assert_eq!(absent, PLANE_PASSES);
+    assert_eq!(absent, ["texel_points"]);
     assert!(plan.passes.iter().all(|pass| !pass.reason.is_empty()));
 }
 
@@ -154,7 +162,7 @@ fn a_full_scene_needs_every_pass() {
 fn every_pass_is_in_or_out_with_a_reason() {
     for name in scene_files::names() {
         let plan = planned(&scene_files::load(&name, &[]));
-        for pass in passes::ALL {
+        for pass in default_passes() {
             let is_in = names(&plan).contains(&pass.name);
             assert_ne!(
                 is_in,
@@ -343,7 +351,7 @@ fn row_of_boxes(detail: f64) -> Value {
 #[test]
 fn maps_go_by_the_size_on_the_picture() {
     let sizes = |detail: f64| -> Vec<u32> {
-        let facts = SceneFacts::of(&scene_files::scene(row_of_boxes(detail))).unwrap();
+        let facts = methods::facts(&scene_files::scene(row_of_boxes(detail))).unwrap();
         let sizes: Vec<u32> = facts
             .receivers
             .objects
@@ -392,30 +400,61 @@ fn objects_maps_are_finished_in_one_dispatch() {
         scene["objects"] = (0..count)
             .map(|i| json!({ "mesh": "box.obj", "translation_m": place(i), "scale": 0.1 }))
             .collect();
-        let facts = SceneFacts::of(&scene_files::scene(scene)).unwrap();
-        let run = passes::desc::Run::Light {
+        let facts = methods::facts(&scene_files::scene(scene)).unwrap();
+        let set = BeamSetRun {
             index: 0,
             wide_sums: false,
         };
-        (passes::irradiance::PASS.steps)(&facts, run).len()
+        let steps = &stages::irradiance::PASS.steps;
+        steps.of(&facts, Run::BeamSet(set)).unwrap().len()
     };
     assert_eq!((steps(0), steps(1), steps(20)), (1, 2, 2));
 }
 
+/// Slots that do not live at the same time share memory; nothing else does, and the peak counts each byte once.
 #[test]
-fn the_peak_is_the_sum_of_the_slots() {
+fn the_peak_counts_shared_memory_once() {
+    let mut sharing = 0;
     for name in scene_files::names() {
-        let plan = planned(&scene_files::load(&name, &[]));
-        let sum: u64 = plan.slots.iter().map(|slot| slot.bytes).sum();
-        assert_eq!(plan.peak_bytes, sum, "{name}");
+        let facts = methods::facts_with_warnings(&scene_files::load(&name, &[])).unwrap();
+        let plan = plan::plan_scene(&facts, Wanted::Frame, &FakeCache { full: false }).unwrap();
+        let slots = &plan.graph.slots;
+        for (number, bytes) in plan.graph.buffers.iter().enumerate() {
+            let lies_here = |s: &&caustica::graph::PlannedSlot<stages::Caustica>| {
+                s.allocation == Allocation::Buffer(number)
+            };
+            let own: Vec<_> = slots.iter().filter(lies_here).collect();
+            assert!(own.iter().all(|slot| slot.bytes <= *bytes), "{name}");
+            assert!(
+                own.iter().any(|s| s.bytes.next_multiple_of(4) == *bytes),
+                "{name}"
+            );
+            for (k, a) in own.iter().enumerate() {
+                for b in &own[k + 1..] {
+                    let apart = a.life[1] < b.life[0] || b.life[1] < a.life[0];
+                    assert!(apart, "{:?} and {:?} of {name}", a.slot, b.slot);
+                    sharing += 1;
+                }
+            }
+        }
+        let report = &plan.report;
+        let owned = report.slots.iter().filter(|slot| slot.shares.is_none());
+        let of_textures = slots
+            .iter()
+            .filter(|s| s.allocation == Allocation::Textures);
+        let textures: u64 = of_textures.map(|slot| slot.bytes).sum();
+        let sum: u64 = owned.map(|slot| slot.bytes).sum::<u64>() - textures;
+        assert_eq!(report.peak_bytes, sum + plan.graph.texture_bytes, "{name}");
     }
+    assert!(sharing > 20, "{sharing}");
 }
 
 #[test]
 fn a_pass_that_nobody_feeds_is_an_error() {
-    let facts = SceneFacts::of(&scene_files::scene(pool())).unwrap();
+    let facts = methods::facts(&scene_files::scene(pool())).unwrap();
     for gone in ["surface", "camera_hits", "hits"] {
-        let list: Vec<&PassDesc> = passes::ALL.into_iter().filter(|p| p.name != gone).collect();
+        let mut list = default_passes();
+        list.retain(|pass| pass.name != gone);
         let error =
             plan::plan(&list, &facts, Wanted::Frame, &FakeCache { full: false }).unwrap_err();
         let PlanError::NothingWrites { slot, .. } = error;
@@ -425,10 +464,11 @@ fn a_pass_that_nobody_feeds_is_an_error() {
 
 #[test]
 fn a_pass_before_its_source_is_an_error() {
-    let facts = SceneFacts::of(&scene_files::scene(pool())).unwrap();
-    let mut list = passes::ALL.to_vec();
-    let place = |name: &str| passes::ALL.iter().position(|p| p.name == name).unwrap();
-    list.swap(place("beams"), place("hits"));
+    let facts = methods::facts(&scene_files::scene(pool())).unwrap();
+    let mut list = default_passes();
+    let place = |name: &str| list.iter().position(|p| p.name == name).unwrap();
+    let (beams, hits) = (place("beams"), place("hits"));
+    list.swap(beams, hits);
     let error = plan::plan(&list, &facts, Wanted::Frame, &FakeCache { full: false }).unwrap_err();
     let expected = PlanError::NothingWrites {
         pass: "hits",
@@ -442,9 +482,9 @@ fn scenes_are_fast_with_narrow_sums_and_extremes_are_exact_with_wide_ones() {
     for name in scene_files::names() {
         for cells in ["64", "256", "512", "1024"] {
             let scene = scene_files::load(&name, &[("/quality/water_cells", cells)]);
-            let facts = SceneFacts::of(&scene).unwrap();
+            let facts = methods::facts(&scene).unwrap();
             for sun in 0..facts.lights.beam_sets.len() {
-                let wide = passes::light::needs_wide_sums(&facts, sun);
+                let wide = stages::light::needs_wide_sums(&facts, sun);
                 if facts.lights.beam_sets[sun].source.position_m().is_some() {
                     continue; // beams of a lamp differ in size: wide sums are common
                 }
@@ -455,18 +495,18 @@ fn scenes_are_fast_with_narrow_sums_and_extremes_are_exact_with_wide_ones() {
         }
     }
     // The reef's boxes are small for its pool: where their maps are asked for too, their texels would count too coarsely.
-    let mut facts = SceneFacts::of(&scene_files::load("reef", &[])).unwrap();
+    let mut facts = methods::facts(&scene_files::load("reef", &[])).unwrap();
     facts.output.receiver = None;
-    assert!(passes::light::needs_wide_sums(&facts, 0));
+    assert!(stages::light::needs_wide_sums(&facts, 0));
     for (cells, side) in [("1024", "4"), ("2", "2048")] {
         let changes = [
             ("/quality/water_cells", cells),
             ("/output/width", side),
             ("/output/height", side),
         ];
-        let facts = SceneFacts::of(&scene_files::load("flat", &changes)).unwrap();
+        let facts = methods::facts(&scene_files::load("flat", &changes)).unwrap();
         assert!(
-            passes::light::needs_wide_sums(&facts, 0),
+            stages::light::needs_wide_sums(&facts, 0),
             "{cells} cells, {side}²"
         );
     }
@@ -489,21 +529,21 @@ fn reason_of(plan: &Plan, pass: &str) -> String {
 fn planes_are_in_where_they_are_asked_for() {
     let hit = pool_with(&[]);
     for pass in PLANE_PASSES {
-        assert_eq!(reason_of(&hit, pass), "quality.placement is hit");
+        assert!(!names(&hit).contains(&pass), "{pass}");
     }
     assert_eq!(bytes_of(&hit, "plane_lists"), None);
     let quality = json!({ "placement": "planes", "planes": 17 });
     let planes = pool_with(&[("quality", quality)]);
     assert!(names(&planes).contains(&"depth_profile"));
     assert_eq!(
-        reason_of(&planes, "planes"),
+        reason_of(&planes, "plane_deposit"),
         "1 object under water, cut by 17 planes"
     );
     assert_eq!(
         reason_of(&planes, "depth_profile"),
         "all 17 planes are used"
     );
-    assert!(is_absent(&planes, "volumetric"));
+    assert!(!names(&planes).contains(&"slice_deposit"));
     let quality = json!({ "placement": "planes", "planes": 17, "slicing": "smart" });
     let smart = pool_with(&[("quality", quality)]);
     let reason = reason_of(&smart, "depth_profile");
@@ -515,7 +555,7 @@ fn planes_are_in_where_they_are_asked_for() {
         ("quality", json!({ "placement": "planes" })),
         ("objects", json!([])),
     ]);
-    assert_eq!(reason_of(&dry, "planes"), "no object is under water");
+    assert_eq!(reason_of(&dry, "plane_deposit"), "no object is under water");
 }
 
 #[test]
@@ -527,11 +567,14 @@ fn slices_take_memory_for_each_plane_and_level_maps_do_not() {
     let image = 4 * 128 * 128;
     for planes in [2, 50, 100] {
         let plan = with("volumetric", planes);
-        // One depth for all of them.
         let slices = bytes_of(&plan, "slices");
-        assert_eq!(slices, Some(image * (u64::from(planes) + 1)));
+        assert_eq!(slices, Some(image * u64::from(planes)));
+        // One depth for all of them.
+        assert_eq!(bytes_of(&plan, "slice_depth"), Some(image));
         assert_eq!(bytes_of(&plan, "combined"), Some(image));
-        assert!(is_absent(&plan, "planes") && is_absent(&plan, "depth_profile"));
+        for pass in PLANE_PASSES {
+            assert!(!names(&plan).contains(&pass), "{pass}");
+        }
     }
     let growth = with("volumetric", 100).peak_bytes - with("volumetric", 50).peak_bytes;
     assert_eq!(growth, 50 * image);
@@ -551,11 +594,11 @@ fn planes_say_what_they_leave_out() {
     ]);
     let planes = json!({ "placement": "planes", "layers": 2 });
     let found = codes(&[("objects", two.clone()), ("quality", planes)]);
-    assert!(found.contains(&"planes_ignore_other_objects".to_owned()));
-    assert!(found.contains(&"planes_light_the_first_layer".to_owned()));
+    assert!(found.contains(&"objects_cast_no_shadows_on_objects".to_owned()));
+    assert!(found.contains(&"further_layers_stay_dark".to_owned()));
     let found = codes(&[("objects", two)]);
     assert!(
-        found.iter().all(|code| !code.starts_with("planes_")),
+        !found.contains(&"objects_cast_no_shadows_on_objects".to_owned()),
         "{found:?}"
     );
 }
@@ -569,7 +612,7 @@ fn sums_of_planes_are_wide() {
         (json!({ "method": "volumetric" }), true),
     ] {
         scene["quality"] = quality;
-        let facts = SceneFacts::of(&scene_files::scene(scene.clone())).unwrap();
-        assert_eq!(passes::light::needs_wide_sums(&facts, 0), wide);
+        let facts = methods::facts(&scene_files::scene(scene.clone())).unwrap();
+        assert_eq!(stages::light::needs_wide_sums(&facts, 0), wide);
     }
 }

@@ -17,7 +17,7 @@ fn warnings(cells: u32) -> Vec<(String, Option<String>)> {
         "quality": { "water_cells": cells },
         "output": { "kind": "irradiance_map", "receiver": "floor", "width": 64, "height": 64 }
     }));
-    let facts = SceneFacts::with_warnings(&resolved).unwrap();
+    let facts = caustica::methods::facts_with_warnings(&resolved).unwrap();
     facts
         .warnings
         .into_iter()
@@ -46,7 +46,7 @@ fn the_light_done_coarsely_has_coarser_maps_that_divide_the_fine_ones() {
             "quality": { "water_cells": cells, "map_texels": 255 },
             "output": output
         }));
-        let fine = SceneFacts::of(&resolved).unwrap();
+        let fine = caustica::methods::facts(&resolved).unwrap();
         let coarse = fine.coarse();
         let sides =
             |facts: &SceneFacts| facts.receivers.floor_map.map(|map| [map.width, map.height]);
@@ -114,7 +114,7 @@ fn waves_that_send_light_out_again_are_known_to() {
                     "lights": [{ "kind": "sun", "elevation_deg": elevation_deg, "azimuth_deg": 33, "irradiance_w_m2": [1, 1, 1] }],
                     "output": { "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 16, "height": 16 }
                 }));
-                let facts = SceneFacts::of(&resolved).unwrap();
+                let facts = caustica::methods::facts(&resolved).unwrap();
                 let (comes_out, known) = (comes_out(&facts), facts.unfollowed_ways().again);
                 assert!(known || !comes_out, "{slope}, {elevation_deg}°");
                 seen += u32::from(comes_out);

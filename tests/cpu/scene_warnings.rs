@@ -3,7 +3,6 @@
 use std::f64::consts::{PI, TAU};
 
 use caustica::config::Limits;
-use caustica::facts::SceneFacts;
 use caustica::physics::fresnel::fresnel_transmittance;
 use caustica::physics::solid_angle::solid_angle;
 use caustica::scene::{Scene, resolve};
@@ -67,7 +66,9 @@ fn warnings_of(mut scene: Value, objects: &[(&str, Value)]) -> Vec<Warning> {
     let resolved = Scene::from_value(scene)
         .and_then(|scene| resolve(scene, &Limits::default(), find))
         .unwrap();
-    SceneFacts::with_warnings(&resolved).unwrap().warnings
+    caustica::methods::facts_with_warnings(&resolved)
+        .unwrap()
+        .warnings
 }
 
 /// The only warning with this code: its flux of a light of unit power, which all channels must agree on.
@@ -184,7 +185,7 @@ fn planes_tell_what_objects_stop_twice() {
         warnings(&[sun(90.0)], &objects, &planes)
     };
     let enters = fresnel_transmittance(1.0, 1.333);
-    let code = "planes_ignore_other_objects";
+    let code = "objects_cast_no_shadows_on_objects";
     is_near(unit_flux(&two(0.0), code), enters, 0.02);
     is_near(unit_flux(&two(0.4), code), 0.6 * enters, 0.03);
     assert!(unit_flux(&two(2.0), code) == 0.0);

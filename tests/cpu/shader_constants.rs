@@ -2,13 +2,17 @@
 
 use caustica::facts::{MOST_LIGHTS, SceneFacts};
 use caustica::gpu::shader::Module;
-use caustica::passes::camera_hits::MARCH_UNFINISHED;
-use caustica::passes::desc::Run;
-use caustica::passes::maps::{self, MapLayout};
-use caustica::passes::{
-    self, Groups, PassDesc, Repeat, Work, depth_profile, estimate, landed, level_map, slot, term,
-};
+use caustica::graph::{BandRun, BeamSetRun, Scope};
+use caustica::methods::planes::depth_profile;
+use caustica::methods::{self, Method};
 use caustica::scene::ranges::{self, Integer as _};
+use caustica::stages::camera_hits::MARCH_UNFINISHED;
+use caustica::stages::level_map::LevelMapRun;
+use caustica::stages::maps::{self, MapLayout};
+use caustica::stages::{
+    self, Groups, Pass, Run, Work, estimate, landed, level_map, queues, reference_planes, split,
+    sums, term,
+};
 use serde_json::json;
 use wgpu::naga::{self, Expression, Literal, TypeInner};
 
@@ -64,7 +68,7 @@ fn terms_of_the_energy_account_agree() {
     agrees("TERM_TURNED", term::TURNED as f64);
     agrees("TERM_AGAIN", term::AGAIN as f64);
     agrees("TERM_BARED", term::BARED as f64);
-    assert!((term::BARED as u64) < slot::ENERGY_TERMS);
+    assert!((term::BARED as u64) < sums::ENERGY_TERMS);
 }
 
 #[test]
@@ -87,70 +91,66 @@ fn terms_do_not_overlap() {
 
 #[test]
 fn a_workgroups_account_holds_what_it_notes() {
-    let module = module("passes/deposit.wgsl");
+    let module = module("stages/deposit.wgsl");
     let places = array_length(&module, "account");
     assert_eq!(places, term::LANDED + 3, "terms up to what lands");
 }
 
 #[test]
 fn figures_of_queues_and_maps_agree() {
-    agrees("MOST_GROUPS", f64::from(slot::MOST_GROUPS));
-    agrees("QUEUE_HEAD", slot::QUEUE_HEAD_WORDS as f64);
-    agrees("QUEUE_COUNT", slot::QUEUE_HEAD_WORDS as f64 - 1.0);
-    agrees("SPLIT_HEAD", slot::SPLIT_HEAD_WORDS as f64);
-    agrees("SPLIT_WIDE_SHARE", f64::from(slot::WIDE_GROUPS));
-    agrees("SPLIT_WIDE_COUNT", f64::from(slot::SPLIT_WIDE_WORD - 1));
-    agrees("SPLIT_WIDE_GROUPS", f64::from(slot::SPLIT_WIDE_WORD));
-    agrees("CULL_HEAD", slot::CULL_HEAD_WORDS as f64);
-    agrees("LIST_HEAD", slot::PLANE_LIST_HEAD_WORDS as f64);
-    agrees("TILE", f64::from(slot::PLANE_TILE_TEXELS));
-    agrees("WIDE_GROUPS", f64::from(slot::WIDE_GROUPS));
-    agrees("MOST_CULL_GROUPS", f64::from(slot::MOST_GROUPS));
+    agrees("MOST_GROUPS", f64::from(queues::MOST_GROUPS));
+    agrees("QUEUE_HEAD", queues::QUEUE_HEAD_WORDS as f64);
+    agrees("QUEUE_COUNT", queues::QUEUE_HEAD_WORDS as f64 - 1.0);
+    agrees("SPLIT_HEAD", split::SPLIT_HEAD_WORDS as f64);
+    agrees("SPLIT_WIDE_SHARE", f64::from(queues::WIDE_GROUPS));
+    agrees("SPLIT_WIDE_COUNT", f64::from(split::SPLIT_WIDE_WORD - 1));
+    agrees("SPLIT_WIDE_GROUPS", f64::from(split::SPLIT_WIDE_WORD));
+    agrees("CULL_HEAD", reference_planes::CULL_HEAD_WORDS as f64);
+    agrees("LIST_HEAD", reference_planes::PLANE_LIST_HEAD_WORDS as f64);
+    agrees("TILE", f64::from(reference_planes::PLANE_TILE_TEXELS));
+    agrees("WIDE_GROUPS", f64::from(queues::WIDE_GROUPS));
+    agrees("MOST_CULL_GROUPS", f64::from(queues::MOST_GROUPS));
     agrees("MOST_PLANES", f64::from(ranges::Planes::MAX));
-    let profile = module("passes/depth_profile.wgsl");
+    let profile = module("methods/planes/depth_profile.wgsl");
     let each = constant(&profile, "TEXELS_EACH").unwrap() as u32;
     let side = size(&profile, "profile_count")[0];
     assert_eq!(each * side, depth_profile::TEXELS_PER_GROUP);
-    let estimate = module("passes/estimate.wgsl");
+    let estimate = module("stages/estimate.wgsl");
     let each = constant(&estimate, "PLACES_EACH").unwrap() as u32;
     let side = size(&estimate, "estimate_main")[0];
     assert_eq!(each * side, estimate::PLACES_PER_GROUP);
     agrees("NOWHERE", f64::from(maps::NOWHERE));
     agrees("EMPTY_DEPTH", level_map::EMPTY_DEPTH);
-    let camera = module("passes/camera_irradiance.wgsl");
+    let camera = module("stages/camera_irradiance.wgsl");
     assert_eq!(array_length(&camera, "air_lights"), MOST_LIGHTS);
     assert!(caustica::config::Limits::default().max_lights <= MOST_LIGHTS);
-    let landed_module = module("passes/landed.wgsl");
+    let landed_module = module("stages/landed.wgsl");
     let each = constant(&landed_module, "TEXELS_EACH").unwrap() as u32;
     let side = array_length(&landed_module, "sums") as u32;
     assert_eq!(each * side, landed::TEXELS_PER_GROUP);
     assert_eq!(size(&landed_module, "landed_main"), [side, 1, 1]);
 }
 
+/// The sizes of slots whose elements are structs are whole numbers of them.
 #[test]
-fn receivers_have_the_size_that_slots_reckon_with() {
-    let size_of = |name: &str| {
-        passes::gpu_data::LAYOUTS
-            .iter()
-            .find(|(wgsl, _, _)| *wgsl == name)
-            .map(|(_, size, _)| *size as u64)
-    };
+fn slots_hold_whole_structs() {
     let facts = facts();
-    assert_eq!(
-        size_of("Receiver").map(|bytes| 2 * bytes),
-        Some(slot::Slot::Receivers.bytes(&facts)),
-        "the floor and one object"
-    );
-    let waves = facts.water.surface.components.len() as u64;
-    assert_eq!(
-        Some(slot::Slot::Waves.bytes(&facts) / waves),
-        size_of("Wave")
-    );
-    let objects = facts.receivers.objects.len() as u64;
-    assert_eq!(
-        Some(slot::Slot::Instances.bytes(&facts) / objects),
-        size_of("Instance")
-    );
+    let mut seen = 0;
+    for pass in methods::all_passes() {
+        for slot in pass.slots() {
+            let Some((name, size, _)) = slot.element else {
+                continue;
+            };
+            let bytes = slot.bytes(&facts);
+            assert!(bytes > 0, "{slot:?} of {name}");
+            assert_eq!(bytes % size as u64, 0, "{slot:?} of {name}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 5, "{seen}");
+    let receiver = size_of::<stages::receivers::Receiver>() as u64;
+    let receivers = stages::receivers::RECEIVERS.bytes(&facts);
+    assert_eq!(receivers, 2 * receiver, "the floor and one object");
 }
 
 fn array_length(module: &Module, variable: &str) -> usize {
@@ -178,6 +178,11 @@ fn size(module: &Module, entry: &str) -> [u32; 3] {
 
 /// Odd sizes everywhere: whoever divides by the wrong number is found out.
 fn facts() -> SceneFacts {
+    facts_with(methods::ALL[0])
+}
+
+/// The same scene with any method.
+fn facts_with(method: &Method) -> SceneFacts {
     let resolved = scene_files::scene(json!({
         "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 1.1 }] },
         "floor": { "depth_m": 2, "size_m": [9, 7] },
@@ -187,13 +192,28 @@ fn facts() -> SceneFacts {
         "quality": { "water_cells": 131, "map_texels": 333, "level_map_texels": 64, "slicing": "smart", "planes": 7 },
         "output": { "kind": "view", "width": 101, "height": 67 }
     }));
-    SceneFacts::of(&resolved).unwrap()
+    let facts = (method.facts)(&resolved.scene.quality);
+    SceneFacts::of(&resolved, facts).unwrap()
 }
 
+/// A beam set with narrow sums.
+const SET: BeamSetRun = BeamSetRun {
+    index: 0,
+    wide_sums: false,
+};
+
+/// The band of the whole picture of [`facts`].
+const BAND: BandRun = BandRun {
+    first_row: 0,
+    rows: 67,
+    offset: [0.0; 2],
+    sample_index: 0,
+};
+
 /// (workgroups × size of one, invocations needed) of the first step of a pass, as plain products.
-fn check_cover(pass: &PassDesc, facts: &SceneFacts, run: Run<'_>, tile: [u32; 2], needs: [u32; 2]) {
-    let module = module(&format!("passes/{}.wgsl", pass.name));
-    let steps = (pass.steps)(facts, run);
+fn check_cover(pass: &Pass, facts: &SceneFacts, run: Run<'_>, tile: [u32; 2], needs: [u32; 2]) {
+    let module = module(pass.shader);
+    let steps = pass.steps.of(facts, run).unwrap();
     assert!(!steps.is_empty(), "{}", pass.name);
     let Work::Compute(Groups::Direct(groups)) = steps[0].work else {
         panic!("{} does not dispatch", pass.name);
@@ -226,7 +246,7 @@ fn long_rows_of_workgroups_are_folded_evenly() {
     for groups in [
         0, 1, 65_534, 65_535, 65_536, 65_601, 131_070, 131_071, 4_000_000,
     ] {
-        let Groups::Direct([x, y, z]) = slot::in_columns(groups) else {
+        let Groups::Direct([x, y, z]) = queues::in_columns(groups) else {
             panic!("no fixed number");
         };
         assert!(x <= 65_535 && y <= 65_535 && z == 1, "{groups}");
@@ -240,30 +260,26 @@ fn long_rows_of_workgroups_are_folded_evenly() {
 #[test]
 fn dispatches_cover_their_work() {
     let facts = facts();
-    let light = Run::Light {
-        index: 0,
-        wide_sums: false,
-    };
+    let set = Run::BeamSet(SET);
     for pass in [
-        &passes::surface::PASS,
-        &passes::beams::PASS,
-        &passes::hits::PASS,
+        &stages::surface::PASS,
+        &stages::beams::PASS,
+        &stages::hits::PASS,
     ] {
         // Vertices row by row, without a gap.
-        check_cover(pass, &facts, light, [64, 1], [132 * 132, 1]);
+        check_cover(pass, &facts, set, [64, 1], [132 * 132, 1]);
     }
-    check_cover(&passes::deposit::PASS, &facts, light, [8, 8], [131, 131]);
+    check_cover(&stages::deposit::PASS, &facts, set, [8, 8], [131, 131]);
     let maps = MapLayout::of(&facts);
     assert_eq!(maps.flux_texels(), floor_texels(&facts) + 64 * 64);
-    let band = Run::Band {
-        first_row: 0,
-        rows: 67,
-        offset: [0.0; 2],
-        sample_index: 0,
-    };
-    for pass in passes::ALL.iter().filter(|p| p.repeat == Repeat::Band) {
-        check_cover(pass, &facts, band, [8, 8], [101, 67]);
+    let mut seen = 0;
+    for pass in methods::all_passes() {
+        if pass.steps.scope() == Scope::Band {
+            check_cover(pass, &facts, Run::Band(BAND), [8, 8], [101, 67]);
+            seen += 1;
+        }
     }
+    assert!(seen >= 4, "{seen}");
 }
 
 fn floor_texels(facts: &SceneFacts) -> u64 {
@@ -274,81 +290,121 @@ fn floor_texels(facts: &SceneFacts) -> u64 {
 #[test]
 fn sums_over_texels_cover_all_of_them() {
     let facts = facts();
-    let light = Run::Light {
-        index: 0,
-        wide_sums: false,
-    };
-    let groups = |work: Work| match work {
+    let groups = |work: &Work| match work {
         Work::Compute(Groups::Direct(groups)) => groups.iter().product::<u32>(),
         _ => panic!("no dispatch"),
     };
-    let landed = (landed::PASS.steps)(&facts, light);
+    let landed = landed::PASS.steps.of(&facts, Run::BeamSet(SET)).unwrap();
     let maps = MapLayout::of(&facts);
     let needed = maps
         .flux_texels()
         .div_ceil(u64::from(landed::TEXELS_PER_GROUP));
-    assert_eq!(u64::from(groups(landed[0].work)), needed);
-    let side = size(&module("passes/irradiance.wgsl"), "irradiance_main")[0];
-    let irradiance = (passes::irradiance::PASS.steps)(&facts, light);
+    assert_eq!(u64::from(groups(&landed[0].work)), needed);
+    let side = size(&module("stages/irradiance.wgsl"), "irradiance_main")[0];
+    let irradiance = &stages::irradiance::PASS.steps;
+    let irradiance = irradiance.of(&facts, Run::BeamSet(SET)).unwrap();
     assert_eq!(irradiance.len(), 2, "the floor and one object");
     let texels = [floor_texels(&facts), 64 * 64];
     for (step, texels) in irradiance.iter().zip(texels) {
-        assert!(u64::from(groups(step.work) * side) >= texels);
+        assert!(u64::from(groups(&step.work) * side) >= texels);
+    }
+}
+
+/// The run of a pass's own scope.
+fn own_run<'a>(pass: &Pass, level_map: &'a LevelMapRun, facts: &'a SceneFacts) -> Run<'a> {
+    match pass.steps.scope() {
+        Scope::Frame => Run::Frame,
+        Scope::LevelMap => Run::LevelMap(level_map),
+        Scope::BeamSet | Scope::FineBeamSet => Run::BeamSet(SET),
+        Scope::CoarseBeamSet => Run::CoarseBeamSet(SET, facts),
+        Scope::Estimate => Run::Estimate,
+        Scope::Band => Run::Band(BAND),
+        Scope::BandBeamSet => Run::BandBeamSet(BAND, SET),
+    }
+}
+
+fn a_level_map(facts: &SceneFacts) -> LevelMapRun {
+    let mut level_box = facts.lights.lit[0].boxes[0].clone().unwrap();
+    level_box.key.layers = 2;
+    LevelMapRun {
+        level_box,
+        arena_offset: 0,
+        first_triangle: 0,
+        triangles: 12,
     }
 }
 
 #[test]
 fn every_entry_point_is_run_by_a_step() {
-    let facts = facts();
-    let mut level_box = facts.lights.lit[0].boxes[0].clone().unwrap();
-    level_box.key.layers = 2;
-    for pass in passes::ALL {
-        let run = match pass.repeat {
-            Repeat::LevelMap => Run::LevelMap {
-                level_box: &level_box,
-                arena_offset: 0,
-                first_triangle: 0,
-                triangles: 12,
-            },
-            Repeat::Light | Repeat::FineLight => Run::Light {
-                index: 0,
-                wide_sums: false,
-            },
-            Repeat::CoarseLight => Run::CoarseLight {
-                index: 0,
-                wide_sums: false,
-                fine: &facts,
-            },
-            Repeat::Frame => Run::Frame,
-            Repeat::Band => Run::Band {
-                first_row: 0,
-                rows: 67,
-                offset: [0.0; 2],
-                sample_index: 0,
-            },
-        };
-        let module = module(&format!("passes/{}.wgsl", pass.name));
-        let steps = (pass.steps)(&facts, run);
-        for entry in &module.ir.entry_points {
-            let run = steps.iter().any(|step| step.entry == entry.name);
-            let drawn = entry.stage == naga::ShaderStage::Fragment;
-            assert!(run || drawn, "{} of {}", entry.name, pass.name);
+    for method in methods::ALL {
+        let facts = facts_with(method);
+        let level_map = a_level_map(&facts);
+        for pass in method.pipeline() {
+            let module = module(pass.shader);
+            let run = own_run(pass, &level_map, &facts);
+            let steps = pass.steps.of(&facts, run).unwrap();
+            check_entries(pass, &module, &steps);
         }
-        for step in &steps {
-            let found = module.bindings(pass.name, step.entry).unwrap();
-            for (name, bytes) in &step.uniforms {
-                if let Some(bound) = found.iter().find(|b| b.name == *name) {
-                    let caustica::gpu::shader::Access::Uniform(size) = bound.access else {
-                        panic!("{name} of {} is no uniform", step.entry);
-                    };
-                    assert_eq!(bytes.len() as u32, size, "{name} of {}", step.entry);
-                }
+    }
+}
+
+/// Steps for another scope are an error and not an empty list.
+#[test]
+fn steps_of_another_scope_are_an_error() {
+    let facts = facts();
+    let level_map = a_level_map(&facts);
+    let runs = [
+        Run::Frame,
+        Run::LevelMap(&level_map),
+        Run::BeamSet(SET),
+        Run::CoarseBeamSet(SET, &facts),
+        Run::Estimate,
+        Run::Band(BAND),
+        Run::BandBeamSet(BAND, SET),
+    ];
+    for pass in methods::all_passes() {
+        let accepted = runs
+            .iter()
+            .filter(|&&run| pass.steps.of(&facts, run).is_ok());
+        assert_eq!(accepted.count(), 1, "{}", pass.name);
+    }
+    let wrong = stages::surface::PASS.steps.of(&facts, Run::Estimate);
+    let wrong = wrong.err().unwrap();
+    assert_eq!(
+        wrong.to_string(),
+        "its scope is BeamSet, but it was run for the estimate"
+    );
+}
+
+/// Steps run all entry points of the shader, and bring along the uniforms that those bind, as they are declared.
+fn check_entries(pass: &Pass, module: &Module, steps: &[stages::Step]) {
+    for entry in &module.ir.entry_points {
+        let runs = |step: &stages::Step| {
+            let draws = match &step.work {
+                Work::Draw(draw) => draw.fragment == entry.name,
+                Work::Compute(_) => false,
+            };
+            draws || step.entry == entry.name
+        };
+        assert!(steps.iter().any(runs), "{} of {}", entry.name, pass.name);
+    }
+    for step in steps {
+        let found = module.bindings(pass.name, step.entry).unwrap();
+        for (name, bytes) in &step.uniforms {
+            let declared = pass.uniforms.iter().find(|(own, _)| own == name);
+            let (_, (_, size, _)) = declared.unwrap_or_else(|| panic!("{name} of {}", pass.name));
+            assert_eq!(bytes.len() % size, 0, "{name} of {}", step.entry);
+            if let Some(bound) = found.iter().find(|b| b.name == *name) {
+                let caustica::gpu::shader::Access::Uniform(size) = bound.access else {
+                    panic!("{name} of {} is no uniform", step.entry);
+                };
+                assert_eq!(bytes.len() as u32, size, "{name} of {}", step.entry);
             }
-            for bound in &found {
-                if matches!(bound.access, caustica::gpu::shader::Access::Uniform(_)) {
-                    let brought = step.uniforms.iter().any(|(name, _)| *name == bound.name);
-                    assert!(brought, "{} of {}", bound.name, step.entry);
-                }
+        }
+        for bound in &found {
+            if matches!(bound.access, caustica::gpu::shader::Access::Uniform(_)) {
+                let brought = step.uniforms.iter().any(|(name, _)| *name == bound.name);
+                assert!(brought, "{} of {}", bound.name, step.entry);
             }
         }
     }
@@ -361,10 +417,13 @@ fn buffers_hold_at_least_one_element() {
         "floor": { "depth_m": 2, "size_m": [9, 7] },
         "camera": { "position_m": [0, 3, 2], "target_m": [0, -1, 0] }
     }));
-    let facts = SceneFacts::of(&resolved).unwrap();
-    for (path, module) in pass_modules() {
+    let facts = methods::facts(&resolved).unwrap();
+    for pass in methods::all_passes() {
+        let (path, module) = (pass.shader, module(pass.shader));
         for (_, variable) in module.ir.global_variables.iter() {
-            let Some(slot) = variable.name.as_deref().and_then(slot::Slot::by_name) else {
+            let slots = pass.slots().collect::<Vec<_>>();
+            let named = |slot: &&&stages::Slot| Some(slot.name) == variable.name.as_deref();
+            let Some(slot) = slots.iter().find(named) else {
                 continue;
             };
             if let TypeInner::Array { stride, .. } = module.ir.types[variable.ty].inner {

@@ -5,38 +5,15 @@ use std::path::Path;
 
 use caustica::gpu::shader::{Access, Module, ShaderSources};
 use caustica::gpu::{GpuError, pieces};
-use caustica::passes::{self, PassDesc, Slot, gpu_data, shaders};
+use caustica::graph::Layout;
+use caustica::methods;
 use caustica::physics::registry;
+use caustica::stages::{Pass, Slot, shaders};
 use wgpu::naga;
 use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
 
 /// Storage buffers that every WebGPU device can bind to one stage.
 const BASELINE_STORAGE_BUFFERS: usize = 8;
-/// Uniform variables that steps bring along.
-const UNIFORMS: [&str; 11] = [
-    "air_lights",
-    "coarse_light",
-    "estimate",
-    "level_map_view",
-    "light",
-    "planes",
-    "resolve",
-    "span",
-    "split",
-    "unfollowed",
-    "view",
-];
-/// Textures that the executor draws into.
-const TEXTURES: [&str; 7] = [
-    "front_depth",
-    "back_depth",
-    "front_normal",
-    "previous_depth",
-    "layer_depth",
-    "layer_normal",
-    "slice",
-];
-
 /// The module of a file below `shaders/`.
 pub(crate) fn module(path: &str) -> Module {
     let text = shaders::embedded()
@@ -45,10 +22,15 @@ pub(crate) fn module(path: &str) -> Module {
     Module::parse(path, text).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// Whether a file is the shader of a pass.
+fn is_of_a_pass(path: &&str) -> bool {
+    path.starts_with("stages/") || path.starts_with("methods/")
+}
+
 /// All pass modules by file.
 pub(crate) fn pass_modules() -> Vec<(&'static str, Module)> {
     let sources = shaders::embedded();
-    let passes = sources.paths().filter(|path| path.starts_with("passes/"));
+    let passes = sources.paths().filter(is_of_a_pass);
     passes.map(|path| (path, module(path))).collect()
 }
 
@@ -86,11 +68,16 @@ fn every_file_is_embedded_as_it_is() {
 
 #[test]
 fn every_pass_has_its_shader_and_every_shader_its_pass() {
-    let passes: BTreeSet<String> = passes::ALL
-        .iter()
-        .map(|pass| format!("passes/{}.wgsl", pass.name))
-        .collect();
-    assert_eq!(passes.len(), passes::ALL.len(), "a name is used twice");
+    let all = methods::all_passes();
+    let names: BTreeSet<&str> = all.iter().map(|pass| pass.name).collect();
+    assert_eq!(names.len(), all.len(), "a name is used twice");
+    let passes: BTreeSet<String> = all.iter().map(|pass| pass.shader.to_owned()).collect();
+    for pass in &all {
+        assert!(
+            pass.shader.ends_with(&format!("/{}.wgsl", pass.name)),
+            "{pass:?}"
+        );
+    }
     let files: BTreeSet<String> = pass_modules()
         .iter()
         .map(|(path, module)| {
@@ -110,7 +97,7 @@ fn every_file_is_imported_by_some_pass() {
         .flat_map(str::lines)
         .filter(|line| line.trim_start().starts_with("#import"))
         .collect();
-    for path in sources.paths().filter(|path| !path.starts_with("passes/")) {
+    for path in sources.paths().filter(|path| !is_of_a_pass(path)) {
         assert!(imports.contains(&format!("\"{path}\"")), "{path} is unused");
     }
 }
@@ -152,8 +139,22 @@ fn what_is_not_valid_is_an_error_that_shows_where() {
     }
 }
 
+/// Layouts of all structs that host and shaders share: uniforms of passes, and elements of slots.
+fn layouts() -> Vec<Layout> {
+    let mut all: BTreeMap<&str, Layout> = BTreeMap::new();
+    for pass in methods::all_passes() {
+        let uniforms = pass.uniforms.iter().map(|(_, layout)| *layout);
+        for layout in uniforms.chain(pass.slots().filter_map(|slot| slot.element)) {
+            let known = all.insert(layout.0, layout);
+            assert!(known.is_none_or(|known| known == layout), "{}", layout.0);
+        }
+    }
+    all.into_values().collect()
+}
+
 #[test]
 fn structs_have_the_same_layout_on_both_sides() {
+    let layouts = layouts();
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     for (path, module) in pass_modules() {
         for (_, ty) in module.ir.types.iter() {
@@ -161,8 +162,7 @@ fn structs_have_the_same_layout_on_both_sides() {
                 continue;
             };
             let name = ty.name.as_deref().unwrap_or_default();
-            let Some((name, size, fields)) =
-                gpu_data::LAYOUTS.iter().find(|(wgsl, _, _)| *wgsl == name)
+            let Some((name, size, fields)) = layouts.iter().find(|(wgsl, _, _)| *wgsl == name)
             else {
                 continue;
             };
@@ -175,7 +175,7 @@ fn structs_have_the_same_layout_on_both_sides() {
             assert_eq!(*span as usize, *size, "size of {name} in {path}");
         }
     }
-    for (name, _, _) in gpu_data::LAYOUTS {
+    for (name, _, _) in layouts {
         assert!(seen.contains_key(name), "no shader has {name}");
     }
 }
@@ -228,40 +228,51 @@ fn samples_keep_to_the_domain_and_reach_its_edges() {
     }
 }
 
-/// What `pass` may bind, and what of it may be written.
-fn allowed(pass: &PassDesc) -> (BTreeSet<&'static str>, BTreeSet<&'static str>) {
-    let names = |slots: &[Slot]| -> Vec<&'static str> {
-        slots.iter().map(|slot| slot.info().name).collect()
-    };
-    let written: BTreeSet<&str> = names(pass.writes).into_iter().collect();
-    let mut all = written.clone();
-    all.extend(names(pass.reads));
-    all.extend(names(pass.reads_if_present));
-    (all, written)
+/// Texture variables of a pass's steps that have names of their own.
+fn views_of(pass: &Pass) -> BTreeSet<&'static str> {
+    VIEWS
+        .iter()
+        .filter(|(name, _)| *name == pass.name)
+        .map(|(_, view)| *view)
+        .collect()
 }
 
+/// Passes and the texture variables that their steps bind to one layer of a slot under another name.
+const VIEWS: [(&str, &str); 2] = [("level_map", "previous_depth"), ("slice_deposit", "slice")];
+
+/// Every variable that a pass binds is a slot it declares, a uniform of it or a view of its steps; every slot that it says it reads or
+/// writes is bound, or drawn into; and what it writes is among its writes.
 #[test]
-fn passes_bind_what_they_declare() {
-    for pass in passes::ALL {
-        let path = format!("passes/{}.wgsl", pass.name);
-        let module = module(&path);
+fn passes_bind_what_they_declare_and_declare_what_they_bind() {
+    for pass in methods::all_passes() {
+        let path = pass.shader;
+        let module = module(path);
         let info = info_of(&module);
-        let (slots, written) = allowed(pass);
-        let mut bound_anywhere = BTreeSet::new();
+        let slots: BTreeSet<&str> = pass.slots().map(|slot| slot.name).collect();
+        let written: BTreeSet<&str> = pass.writes.iter().map(|slot| slot.name).collect();
+        let uniforms: BTreeSet<&str> = pass.uniforms.iter().map(|(name, _)| *name).collect();
+        let views = views_of(pass);
+        let (mut bound_slots, mut bound_uniforms) = (BTreeSet::new(), BTreeSet::new());
         for (index, entry) in module.ir.entry_points.iter().enumerate() {
             let context = format!("{} in {path}", entry.name);
-            let bindings = module.bindings(&path, &entry.name).unwrap();
+            let bindings = module.bindings(path, &entry.name).unwrap();
             let mut storage = 0;
             for bound in &bindings {
                 let name = bound.name.as_str();
                 match bound.access {
-                    Access::Uniform(_) => assert!(UNIFORMS.contains(&name), "{name} of {context}"),
-                    Access::Texture(_) => assert!(TEXTURES.contains(&name), "{name} of {context}"),
+                    Access::Uniform(_) => {
+                        assert!(uniforms.contains(name), "{name} of {context}");
+                        bound_uniforms.insert(bound.name.clone());
+                    }
+                    Access::Texture { .. } | Access::StorageTexture { .. } => {
+                        let known = slots.contains(name) || views.contains(name);
+                        assert!(known, "{name} of {context}");
+                        bound_slots.insert(bound.name.clone());
+                    }
                     Access::StorageRead | Access::StorageWrite => {
                         storage += 1;
                         assert!(slots.contains(name), "{name} of {context} is not declared");
-                        assert!(Slot::by_name(name).is_some(), "{name} of {context}");
-                        bound_anywhere.insert(bound.name.clone());
+                        bound_slots.insert(bound.name.clone());
                     }
                 }
             }
@@ -278,13 +289,21 @@ fn passes_bind_what_they_declare() {
                 }
             }
         }
-        let draws = pass.name == "level_map";
-        for slot in pass.writes {
-            let name = slot.info().name;
-            let draws = draws || *slot == Slot::Slices;
+        for slot in pass.slots() {
+            // A texture that is written is drawn into.
+            let is_drawn = !slot.is_buffer() && written.contains(slot.name);
+            // What a pass draws it may leave to the next one to put where it belongs.
+            let is_handed_on = pass.name == "level_map" && slot.name == "level_maps";
             assert!(
-                draws || bound_anywhere.contains(name),
-                "{} says it writes {name} and binds it nowhere",
+                is_drawn || is_handed_on || bound_slots.contains(slot.name),
+                "{} declares {slot:?} and binds it nowhere",
+                pass.name
+            );
+        }
+        for uniform in uniforms {
+            assert!(
+                bound_uniforms.contains(uniform),
+                "{uniform} of {}",
                 pass.name
             );
         }
@@ -293,18 +312,21 @@ fn passes_bind_what_they_declare() {
 
 #[test]
 fn bindings_of_an_unknown_entry_point_are_an_error() {
-    let module = module("passes/hits.wgsl");
-    assert!(module.bindings("passes/hits.wgsl", "misses_main").is_err());
+    let module = module("stages/hits.wgsl");
+    assert!(module.bindings("stages/hits.wgsl", "misses_main").is_err());
 }
 
+/// Slots are told apart by their names: two with the same name are the same.
 #[test]
 fn slots_have_names_of_their_own() {
-    let names: BTreeSet<&str> = passes::slot::SLOTS.iter().map(|s| s.info().name).collect();
-    assert_eq!(names.len(), passes::slot::SLOTS.len());
-    for slot in passes::slot::SLOTS {
-        assert_eq!(Slot::by_name(slot.info().name), Some(slot));
+    let mut known: BTreeMap<&str, &'static Slot> = BTreeMap::new();
+    for pass in methods::all_passes() {
+        for slot in pass.slots() {
+            let first = known.entry(slot.name).or_insert(slot);
+            assert!(std::ptr::eq(*first, slot), "two slots are called {slot:?}");
+        }
     }
-    assert_eq!(Slot::by_name("nothing"), None);
+    assert!(known.len() > 20, "{}", known.len());
 }
 
 /// A workgroup that is told where it is reads nothing else, and every entry point that reads where it is can be told.
@@ -336,8 +358,8 @@ fn every_compute_entry_can_be_run_in_pieces() {
         }
     }
     assert!(cut >= 15, "{cut}");
-    let module = module("passes/hits.wgsl");
-    assert!(pieces::told_its_piece(&module, "passes/hits.wgsl", "misses_main").is_err());
+    let module = module("stages/hits.wgsl");
+    assert!(pieces::told_its_piece(&module, "stages/hits.wgsl", "misses_main").is_err());
 }
 
 /// Pieces of any size tile the dispatch: every workgroup once, in order.

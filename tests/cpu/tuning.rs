@@ -2,11 +2,14 @@
 
 use std::convert::Infallible;
 
+use caustica::plan::{NothingCached, Wanted, plan_scene};
 use caustica::scene::Quality;
 use caustica::tuning::calibration::CalibrationError;
 use caustica::tuning::choose::{self, Prospect};
 use caustica::tuning::cost::{PassRate, fit_rate};
 use caustica::tuning::{Calibration, ladder};
+
+use super::scene_files;
 
 fn map(most_cells: u32) -> Prospect {
     Prospect {
@@ -259,14 +262,24 @@ fn rates_are_found_again() {
 #[test]
 fn the_built_in_calibration_knows_every_pass() {
     let built_in = Calibration::default();
-    // Dials are not chosen for scenes that place light by planes.
-    let by_planes = ["depth_profile", "planes", "volumetric"];
-    for pass in caustica::passes::ALL {
-        if by_planes.contains(&pass.name) {
-            continue;
+    let mut seen = 0;
+    for name in scene_files::names() {
+        let scene = scene_files::load(&name, &[("/quality/estimate_error", "true")]);
+        let facts = caustica::methods::facts(&scene).unwrap();
+        let cold = NothingCached {
+            arena_bytes: 1 << 20,
+        };
+        let plan = plan_scene(&facts, Wanted::Frame, &cold).unwrap();
+        for (pass, _) in &plan.graph.passes {
+            assert!(
+                built_in.passes.contains_key(pass.name),
+                "{} of {name}",
+                pass.name
+            );
+            seen += 1;
         }
-        assert!(built_in.passes.contains_key(pass.name), "{}", pass.name);
     }
+    assert!(seen > 50, "{seen}");
     let text = serde_json::to_string(&built_in).unwrap();
     assert_eq!(Calibration::read(&text, "it").unwrap(), built_in);
 }

@@ -8,9 +8,9 @@ use caustica::config::{Limits, RenderConfig};
 use caustica::gpu::shader::ShaderSources;
 use caustica::gpu_queue::{GpuQueue, QueueSettings, RenderBackend};
 use caustica::http::{AppState, app};
-use caustica::passes::shaders;
 use caustica::physics::registry;
 use caustica::render::{Renderer, twin_error};
+use caustica::stages::shaders;
 use serde_json::{Value, json};
 use tower::ServiceExt as _;
 

@@ -3,12 +3,11 @@
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;
-use caustica::facts::SceneFacts;
 use caustica::frame::Frame;
-use caustica::passes::shaders;
 use caustica::reference::closed_form::flat_water_irradiance;
 use caustica::render::{RenderError, Renderer};
 use caustica::scene::{LayerName, Light};
+use caustica::stages::shaders;
 use serde_json::{Value, json};
 
 use super::harness::{self, Map};
@@ -91,7 +90,7 @@ fn far_objects_get_small_maps_and_the_picture_hardly_changes() {
     let full = frame(renderer, &scene);
     scene["quality"]["level_of_detail"] = json!(2);
     let resolved = scene_files::scene(scene);
-    let facts = SceneFacts::of(&resolved).unwrap();
+    let facts = caustica::methods::facts(&resolved).unwrap();
     let mut sizes: Vec<u32> = facts
         .receivers
         .objects
@@ -160,7 +159,7 @@ fn every_object_has_the_measure_of_its_own_map() {
         "output": { "kind": "view", "width": 96, "height": 48, "format": "exr", "layers": ["irradiance", "position"] }
     });
     let resolved = scene_files::scene(scene);
-    let facts = SceneFacts::of(&resolved).unwrap();
+    let facts = caustica::methods::facts(&resolved).unwrap();
     let sizes: Vec<u32> = facts
         .receivers
         .objects

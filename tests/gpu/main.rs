@@ -8,6 +8,7 @@
 
 mod accuracy_program;
 mod accuracy_service;
+mod conformance;
 mod determinism;
 mod energy;
 mod estimate;
@@ -34,6 +35,7 @@ mod level_maps_service;
 mod memory;
 mod planes;
 mod planted;
+mod points;
 mod properties;
 #[path = "../support/scene_files.rs"]
 mod scene_files;

@@ -187,7 +187,7 @@ fn the_floor_gets_nearly_the_same_shadow() {
 }
 
 #[test]
-fn what_planes_do_not_conserve_is_said() {
+fn what_method_does_not_conserve_is_said() {
     let few = on_object("sphere", planes(4, "uniform"));
     let many = on_object("sphere", planes(201, "uniform"));
     println!("closure {:.2e} and {:.2e}", few.closure(), many.closure());
@@ -196,7 +196,7 @@ fn what_planes_do_not_conserve_is_said() {
             .stats
             .warnings
             .iter()
-            .find(|w| w.code == "planes_do_not_conserve");
+            .find(|w| w.code == "method_does_not_conserve");
         let account = &map.stats.energy[0];
         let flux_w = warned.unwrap().flux_w.unwrap();
         let largest = (0..3).map(|c| flux_w[c].abs() / account.emitted_w[c]);
@@ -206,7 +206,7 @@ fn what_planes_do_not_conserve_is_said() {
     assert!(many.closure() < 0.01, "{}", many.closure());
     assert!(!warns(
         &on_object("sphere", json!({})),
-        "planes_do_not_conserve"
+        "method_does_not_conserve"
     ));
 }
 

@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;
-use caustica::passes::shaders;
 use caustica::reference::{ReferenceSettings, irradiance_map};
 use caustica::render::Renderer;
+use caustica::stages::shaders;
 use serde_json::json;
 
 use super::harness::Map;

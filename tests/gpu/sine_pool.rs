@@ -11,7 +11,7 @@ use super::scene_files;
 /// Error of the truth itself: well below what is judged by it.
 const TRUTH_ERROR: f64 = 5e-4;
 
-fn truth() -> &'static ReferenceMap {
+pub(crate) fn truth() -> &'static ReferenceMap {
     static TRUTH: OnceLock<ReferenceMap> = OnceLock::new();
     TRUTH.get_or_init(|| {
         let settings = ReferenceSettings {

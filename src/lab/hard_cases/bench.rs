@@ -33,6 +33,24 @@ pub struct Bench<'a> {
     picture: Option<Frame>,
 }
 
+/// A scene whose `objects[i].mesh` are texts of OBJ files, with the meshes.
+pub(super) fn resolved(store: &mut MeshStore, mut value: Value) -> Result<ResolvedScene, Failure> {
+    let mut meshes: Vec<std::sync::Arc<Mesh>> = Vec::new();
+    let objects = value.get_mut("objects").and_then(Value::as_array_mut);
+    for object in objects.into_iter().flatten() {
+        let text = object["mesh"].as_str().unwrap_or_default().to_owned();
+        let mesh = store
+            .insert_obj(text.as_bytes(), None)
+            .map_err(|error| Failure::Check(format!("the mesh is refused: {error}")))?
+            .mesh;
+        object["mesh"] = Value::from(mesh.id.clone());
+        meshes.push(mesh);
+    }
+    let scene = Scene::from_value(value)?;
+    let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
+    Ok(resolve(scene, &Limits::default(), find)?)
+}
+
 impl<'a> Bench<'a> {
     pub(super) fn new(
         renderer: Option<&'a mut Renderer>,
@@ -66,26 +84,12 @@ impl<'a> Bench<'a> {
     }
 
     /// A scene; `objects[i].mesh` is the text of an OBJ.
-    pub(super) fn scene(&mut self, mut value: Value) -> Result<ResolvedScene, Failure> {
+    pub(super) fn scene(&mut self, value: Value) -> Result<ResolvedScene, Failure> {
         if self.renderer.is_none() {
             self.scene.get_or_insert(value);
             return Err(nothing_renders());
         }
-        let mut meshes: Vec<std::sync::Arc<Mesh>> = Vec::new();
-        let objects = value.get_mut("objects").and_then(Value::as_array_mut);
-        for object in objects.into_iter().flatten() {
-            let text = object["mesh"].as_str().unwrap_or_default().to_owned();
-            let mesh = self
-                .meshes
-                .insert_obj(text.as_bytes(), None)
-                .map_err(|error| Failure::Check(format!("the mesh is refused: {error}")))?
-                .mesh;
-            object["mesh"] = Value::from(mesh.id.clone());
-            meshes.push(mesh);
-        }
-        let scene = Scene::from_value(value)?;
-        let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
-        Ok(resolve(scene, &Limits::default(), find)?)
+        resolved(&mut self.meshes, value)
     }
 
     /// Renders a scene twice: both times the same bits, finite, and every account closed.
@@ -245,7 +249,7 @@ fn unsaid(stats: &Stats) -> Option<String> {
     }
     let open = stats.energy.iter().find(|a| a.closure > MOST_CLOSURE);
     match open {
-        Some(account) if !stats.planes.is_empty() && told("planes_do_not_conserve").is_none() => {
+        Some(account) if !stats.planes.is_empty() && told("method_does_not_conserve").is_none() => {
             Some(format!(
                 "planes place {:e} of the flux of light {} too much or too little and do not say so",
                 account.closure, account.light

@@ -88,6 +88,11 @@ pub fn run_with(
     bench.outcome(case, result)
 }
 
+/// A scene of [`scene`], with its meshes; `None` where it is refused.
+pub fn resolved(scene: serde_json::Value) -> Option<crate::scene::ResolvedScene> {
+    bench::resolved(&mut crate::assets::MeshStore::default(), scene).ok()
+}
+
 /// The scene that a case begins with, as JSON with the texts of OBJ files for meshes; nothing is rendered.
 pub fn scene(case: &'static Case) -> Option<serde_json::Value> {
     let mut truths = Truths::default();

@@ -1,7 +1,7 @@
 //! Level maps (Tipprasert 2006), with light placed where rays hit: each ray is marched into the position map of a mesh until it crosses
 //! the surface, the thesis's stated next step; between the hits go beams with exact texel coverage. The default.
 
-use super::Method;
+use super::{Conformance, Method};
 use crate::facts::{MethodFacts, Product};
 use crate::stages::{deposit, hits, irradiance, landed, split, unfollowed};
 
@@ -39,4 +39,8 @@ pub static METHOD: Method = Method {
         leaves_out: crate::facts::method::LeavesOut::default(),
     },
     supports: |_| Ok(()),
+    conformance: Conformance {
+        sine_pool_error_at_256: 5e-3,
+        skips: &[],
+    },
 };

@@ -3,7 +3,7 @@
 
 pub mod slice_deposit;
 
-use super::Method;
+use super::{Conformance, Method};
 use crate::facts::method::LeavesOut;
 use crate::facts::{MethodFacts, Product};
 use crate::stages::{deposit, hits, irradiance, landed, split, unfollowed};
@@ -45,4 +45,8 @@ pub static METHOD: Method = Method {
         },
     },
     supports: |_| Ok(()),
+    conformance: Conformance {
+        sine_pool_error_at_256: 5e-3,
+        skips: &[],
+    },
 };
