@@ -27,6 +27,7 @@ use crate::gpu::timing::Timing;
 use crate::gpu::uniforms::Uniforms;
 use crate::gpu::{BindGroups, BufferPool, GpuContext, GpuError, KernelCache};
 use crate::graph::{PlanError, Scope};
+use crate::methods;
 use crate::plan::{self, Cached, FramePlan, Plan, Wanted};
 use crate::scene::{ResolvedScene, SceneError};
 use crate::stages::objects::GEOMETRY;
