@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::tuning::Calibration;
+use crate::calibration::Calibration;
 
 /// Which adapters may be used.
 #[derive(

@@ -60,10 +60,12 @@
 //! | [`mesh`] | OBJ in, repair report, ray hierarchy |
 //! | [`physics`] | formulas in f64, each with its source; twins in `shaders/lib`, tied by [`physics::registry`] |
 //! | [`config`] | every setting |
+//! | [`calibration`] | what passes cost on one machine, and how far estimates of errors are off |
 
 pub mod accuracy;
 pub mod assets;
 pub mod cache;
+pub mod calibration;
 pub mod cli;
 pub mod config;
 pub mod facts;

@@ -3,13 +3,13 @@
 use glam::{DVec2, DVec3};
 
 use crate::scene::{Scene, Water};
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// The water: its surface at the moment of the frame, and its optics.
 #[derive(Clone, Debug)]
 pub struct WaterFacts {
     /// The waves around the local origin.
-    pub surface: WaterSurface,
+    pub surface: Surface,
     /// Index of refraction.
     pub ior: f64,
     /// Absorption a, 1/m.
@@ -19,7 +19,7 @@ pub struct WaterFacts {
 }
 
 impl WaterFacts {
-    pub(super) fn of(water: &Water, surface: WaterSurface) -> Self {
+    pub(super) fn of(water: &Water, surface: Surface) -> Self {
         Self {
             surface,
             ior: water.ior,
@@ -47,8 +47,8 @@ impl WaterFacts {
 }
 
 /// The surface of `scene` at its moment, around the local origin `origin_m`.
-pub(super) fn surface_around(scene: &Scene, origin_m: DVec3) -> WaterSurface {
-    WaterSurface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z))
+pub(super) fn surface_around(scene: &Scene, origin_m: DVec3) -> Surface {
+    Surface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z))
 }
 
 /// A band of wavelengths: the water as its light meets it, and what it gives to each colour channel.

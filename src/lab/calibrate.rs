@@ -6,6 +6,8 @@ use serde_json::{Value, json};
 
 use crate::accuracy::metrics::{MetricError, relative_l1};
 use crate::assets::MeshStore;
+use crate::calibration::Calibration;
+use crate::calibration::PassRate;
 use crate::config::Limits;
 use crate::facts::SceneFacts;
 use crate::frame::Frame;
@@ -13,8 +15,7 @@ use crate::mesh::MeshError;
 use crate::methods;
 use crate::reference::{ReferenceError, ReferenceSettings, irradiance_map};
 use crate::scene::{LayerName, ResolvedScene, Scene, SceneError, resolve};
-use crate::tuning::Calibration;
-use crate::tuning::cost::{PassRate, fit_rate};
+use crate::tuning::cost::fit_rate;
 
 /// Timed runs of each scene, after one that warms up.
 const RUNS: usize = 5;

@@ -12,7 +12,7 @@ use utoipa::ToSchema;
 
 use crate::facts::placement::LevelMapKey;
 use crate::facts::{Product, SceneFacts};
-use crate::graph::{self, Allocation, PlanError, Planned, PlannedSlot as HeldSlot, Scope};
+use crate::graph::{self, Allocation, Clear, PlanError, Planned, PlannedSlot as HeldSlot, Scope};
 use crate::methods;
 use crate::scene::LayerName;
 use crate::stages::camera_hits::{VISIBLE_ALBEDO, VISIBLE_DEPTH};
@@ -26,8 +26,10 @@ use crate::stages::sums::ENERGY;
 use crate::stages::{Caustica, Pass, Slot};
 use crate::stats::{AbsentPass, ChosenDials, Warning};
 
-/// Bytes a frame holds besides its slots: the empty list, queue heads, arguments of indirect dispatches.
-pub const SUNDRY_BYTES: u64 = 256 + 256 + 12;
+/// Bytes of the list that stands for what a scene has nothing of.
+pub const EMPTY_LIST_BYTES: u64 = 256;
+/// Bytes of the arguments of indirect dispatches.
+pub const INDIRECT_BYTES: u64 = 12;
 
 /// The shortest list of passes that makes what a scene asks for, and why.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -239,7 +241,7 @@ fn report(
         name: pass.name.to_owned(),
         reason: reason.clone(),
     });
-    let besides = besides(facts, wanted);
+    let besides = besides(graph, facts, wanted);
     let kept = graph.slots.iter();
     let kept = kept.filter(|slot| slot.allocation == Allocation::Kept);
     let peak_bytes = graph.buffers.iter().sum::<u64>()
@@ -284,7 +286,7 @@ fn shares(graph: &Planned<Caustica>, held: &HeldSlot<Caustica>) -> Option<String
 }
 
 /// What is held besides the slots.
-fn besides(facts: &SceneFacts, wanted: Wanted) -> Vec<PlannedSlot> {
+fn besides(graph: &Planned<Caustica>, facts: &SceneFacts, wanted: Wanted) -> Vec<PlannedSlot> {
     let readback = match wanted {
         Wanted::LevelMaps => 0,
         Wanted::Points => POINTS.bytes(facts),
@@ -298,7 +300,7 @@ fn besides(facts: &SceneFacts, wanted: Wanted) -> Vec<PlannedSlot> {
         ),
         (
             "sundry",
-            SUNDRY_BYTES,
+            EMPTY_LIST_BYTES + 4 * queue_heads(graph).len().max(1) as u64 + INDIRECT_BYTES,
             "empty list, queue heads, dispatch arguments",
         ),
     ]
@@ -309,6 +311,18 @@ fn besides(facts: &SceneFacts, wanted: Wanted) -> Vec<PlannedSlot> {
         shares: None,
     })
     .into()
+}
+
+/// The heads of a frame's queues, one behind the other, in the order of their slots.
+pub fn queue_heads(graph: &Planned<Caustica>) -> Vec<u32> {
+    let heads = graph
+        .slots
+        .iter()
+        .filter_map(|planned| match planned.slot.clear {
+            Clear::Head(words) => Some(words),
+            Clear::Nothing | Clear::Zero(_) => None,
+        });
+    heads.flatten().copied().collect()
 }
 
 /// Bytes of the estimate's sums, which wait for the host beside any other result.

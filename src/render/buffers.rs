@@ -8,13 +8,13 @@ use crate::gpu::uniforms::Placed;
 use crate::gpu::{Binding, GpuError};
 use crate::graph::plan::Phase;
 use crate::graph::{Allocation, Clear, Kind};
-use crate::plan::FramePlan;
+use crate::plan::{self, EMPTY_LIST_BYTES, FramePlan, INDIRECT_BYTES};
 use crate::scene::ResolvedScene;
 use crate::stages::estimate::{self, COMPARISONS, Comparison};
 use crate::stages::level_map::LEVEL_MAPS;
 use crate::stages::objects::{GEOMETRY, INSTANCES};
 use crate::stages::receivers::{self, ALL_RECEIVERS, RECEIVERS, Receiver};
-use crate::stages::surface::{WAVES, Wave};
+use crate::stages::surface::WAVES;
 use crate::stages::{Pass, Slot};
 
 /// Names of the buffers beside the slots'.
@@ -27,6 +27,8 @@ pub(super) struct FrameSlots {
     held: BTreeMap<&'static Slot, Held>,
     /// The buffers that slots share, each under the name of the largest of them.
     shared: Vec<(&'static str, wgpu::Buffer)>,
+    /// Slots that are cleared before each beam set, in the order of the queue heads.
+    cleared: Vec<&'static Slot>,
     empty: wgpu::Buffer,
     queue_heads: wgpu::Buffer,
     pub(super) indirect: wgpu::Buffer,
@@ -112,10 +114,8 @@ impl FrameSlots {
         wide_sums: bool,
     ) {
         let mut head_at = 0;
-        for (slot, held) in &self.held {
-            let Held::Buffer { buffer, .. } = held else {
-                continue;
-            };
+        for slot in &self.cleared {
+            let (buffer, _) = self.buffer(slot);
             match slot.clear {
                 Clear::Nothing => {}
                 Clear::Zero(bytes) => {
@@ -129,15 +129,6 @@ impl FrameSlots {
             }
         }
     }
-}
-
-/// The heads of a frame's queues, one behind the other.
-fn queue_heads(held: &BTreeMap<&'static Slot, Held>) -> Vec<u32> {
-    let heads = held.keys().filter_map(|slot| match slot.clear {
-        Clear::Head(words) => Some(words),
-        Clear::Nothing | Clear::Zero(_) => None,
-    });
-    heads.flatten().copied().collect()
 }
 
 /// Where uniforms lie, by name.
@@ -180,7 +171,9 @@ impl Renderer {
             };
             held.extend(found.map(|found| (slot, found)));
         }
-        let heads = queue_heads(&held);
+        let heads = plan::queue_heads(&plan.graph);
+        let planned = plan.graph.slots.iter().map(|planned| planned.slot);
+        let cleared = planned.filter(|slot| !matches!(slot.clear, Clear::Nothing));
         let heads_bytes = 4 * heads.len().max(1) as u64;
         let queue_heads =
             self.pool
@@ -190,17 +183,24 @@ impl Renderer {
                 .queue
                 .write_buffer(&queue_heads, 0, bytemuck::cast_slice(&heads));
         }
-        let empty = self
-            .pool
-            .lend(&device, EMPTY_LIST, 256, U::STORAGE | U::COPY_DST);
-        self.gpu.queue.write_buffer(&empty, 0, &[0; 256]);
+        let empty = self.pool.lend(
+            &device,
+            EMPTY_LIST,
+            EMPTY_LIST_BYTES,
+            U::STORAGE | U::COPY_DST,
+        );
+        let zeros = [0; EMPTY_LIST_BYTES as usize];
+        self.gpu.queue.write_buffer(&empty, 0, &zeros);
         let indirect_usage = U::INDIRECT | U::COPY_DST | U::COPY_SRC;
         let slots = FrameSlots {
             held,
             shared,
+            cleared: cleared.collect(),
             empty,
             queue_heads,
-            indirect: self.pool.lend(&device, INDIRECT, 12, indirect_usage),
+            indirect: self
+                .pool
+                .lend(&device, INDIRECT, INDIRECT_BYTES, indirect_usage),
         };
         self.upload(facts, &slots);
         self.gpu.check()?;
@@ -288,16 +288,7 @@ impl Renderer {
             }
         };
         write(&WAVES, &|| {
-            let components = facts.water.surface.components.iter();
-            let waves: Vec<Wave> = components
-                .map(|c| Wave {
-                    amplitude_m: c.amplitude_m as f32,
-                    frequency_x_per_m: c.frequency_per_m.x as f32,
-                    frequency_z_per_m: c.frequency_per_m.y as f32,
-                    phase_turns: c.phase_turns as f32,
-                })
-                .collect();
-            bytemuck::cast_slice(&waves).to_vec()
+            bytemuck::cast_slice(&facts.water.surface.gpu_elements()).to_vec()
         });
         write(&INSTANCES, &|| match self.geometry.in_use() {
             Some(geometry) => bytemuck::cast_slice(&geometry.instances(facts)).to_vec(),

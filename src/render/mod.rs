@@ -18,6 +18,7 @@ use std::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use crate::cache::{ArenaError, LevelMapCache};
+use crate::calibration::Calibration;
 use crate::config::RenderConfig;
 use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
@@ -37,7 +38,6 @@ use crate::stats::{
     AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
     TimeStats, Warning,
 };
-use crate::tuning::Calibration;
 
 pub use prepared::Prepared;
 pub use self_check::{SelfCheck, SelfCheckItem, TwinError, twin_error};

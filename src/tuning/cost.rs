@@ -2,21 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
-
+use crate::calibration::PassRate;
 use crate::facts::SceneFacts;
 use crate::graph::plan::Phase;
 use crate::plan::FramePlan;
-
-/// Cost of a pass on one machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PassRate {
-    /// Each run, whatever it does, ms.
-    pub start_ms: f64,
-    /// Each unit of the pass's work ([`crate::graph::PassDesc::work`]), ns.
-    pub unit_ns: f64,
-}
 
 /// What a plan will take with warm pipelines, ms. Passes without a rate count nothing.
 pub fn predicted_ms(

@@ -3,13 +3,11 @@
 //! - `ladder`: the dials as one family, each rung in balance;
 //! - `choose`: which rung a wanted error needs, from looks at its light;
 //! - `cost`: what a plan will take, pass by pass;
-//! - `calibration`: the figures behind both for one machine, which `caustica calibrate` measures anew (`measure`).
+//!
+//! Both rest on the figures of a [calibration](crate::calibration).
 //!
 //! Nothing here touches a GPU: looking at a scene and measuring are handed in.
 
-pub mod calibration;
 pub mod choose;
 pub mod cost;
 pub mod ladder;
-
-pub use calibration::Calibration;

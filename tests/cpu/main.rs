@@ -43,6 +43,8 @@ mod reference_errors;
 mod reference_lamps;
 mod reference_lens;
 mod reference_meshes;
+mod reference_texels;
+mod rooms;
 mod scene_facts;
 #[path = "../support/scene_files.rs"]
 mod scene_files;

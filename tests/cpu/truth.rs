@@ -11,7 +11,7 @@ use caustica::reference::{
     shadow_edge, truth,
 };
 use caustica::scene::{Light, ResolvedScene, Sun};
-use caustica::waves::WaterSurface;
+use caustica::waves::Surface;
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
@@ -451,7 +451,7 @@ fn questions_without_sense_are_errors() {
 
 /// Plain rays, one in each cell of a fine grid, with the functions of `physics` only: the irradiance of a square.
 fn plain_count(scene: &ResolvedScene, center_m: DVec3, normal: DVec3, side_m: f64) -> f64 {
-    let surface = WaterSurface::of(&scene.scene);
+    let surface = Surface::of(&scene.scene);
     let sun = sun(scene, 0);
     let l = direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians());
     let (u, v) = normal.any_orthonormal_pair();

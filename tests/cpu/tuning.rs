@@ -2,12 +2,14 @@
 
 use std::convert::Infallible;
 
+use caustica::calibration::Calibration;
+use caustica::calibration::CalibrationError;
+use caustica::calibration::PassRate;
 use caustica::plan::{NothingCached, Wanted, plan_scene};
 use caustica::scene::Quality;
-use caustica::tuning::calibration::CalibrationError;
 use caustica::tuning::choose::{self, Prospect};
-use caustica::tuning::cost::{PassRate, fit_rate};
-use caustica::tuning::{Calibration, ladder};
+use caustica::tuning::cost::fit_rate;
+use caustica::tuning::ladder;
 
 use super::scene_files;
 

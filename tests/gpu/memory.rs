@@ -49,6 +49,32 @@ fn allocated_bytes(renderer: &Renderer) -> u64 {
     report.total_allocated_bytes
 }
 
+/// What a plan says a frame holds at its peak is what it holds.
+#[test]
+fn the_planned_peak_is_the_true_one() {
+    let mut renderer = Renderer::new(&RenderConfig::default()).unwrap();
+    let mut shared = 0;
+    for name in scene_files::names() {
+        for estimate in ["false", "true"] {
+            let scene = scene_files::load(&name, &[("/quality/estimate_error", estimate)]);
+            let never = CancellationToken::new();
+            let plan = renderer.plan(&scene, &never).unwrap();
+            let memory = renderer.render(&scene, &never).unwrap().stats.memory;
+            assert_eq!(memory.planned_peak_bytes, plan.peak_bytes, "{name}");
+            assert_eq!(
+                memory.peak_bytes, memory.planned_peak_bytes,
+                "{name}, estimate {estimate}"
+            );
+            shared += plan
+                .slots
+                .iter()
+                .filter(|slot| slot.shares.is_some())
+                .count();
+        }
+    }
+    assert!(shared > 20, "{shared}");
+}
+
 #[test]
 fn the_geometry_of_a_mesh_that_is_forgotten_or_replaced_is_gone() {
     let scene = |mesh: &str| {

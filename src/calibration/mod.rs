@@ -5,8 +5,6 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::cost::PassRate;
-
 /// Version of the file's form.
 const FORM: u32 = 1;
 /// What comes with the program.
@@ -33,6 +31,16 @@ pub enum CalibrationError {
         /// Why.
         reason: String,
     },
+}
+
+/// Cost of a pass on one machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PassRate {
+    /// Each run, whatever it does, ms.
+    pub start_ms: f64,
+    /// Each unit of the pass's work (`work` in its description), ns.
+    pub unit_ns: f64,
 }
 
 /// What was measured.
