@@ -9,8 +9,7 @@ use crate::frame::Frame;
 use crate::gpu::GpuError;
 use crate::mesh::Mesh;
 use crate::plan::Plan;
-use crate::render::{RenderError, Renderer, SelfCheck};
-use crate::scene::ResolvedScene;
+use crate::render::{Prepared, RenderError, Renderer, SelfCheck};
 use crate::stats::{AdapterStats, CacheStats};
 
 /// The renderer as the queue sees it. It is built on the GPU thread and never leaves it, so it need not be `Send`.
@@ -24,14 +23,14 @@ pub trait RenderBackend {
     /// What would run, given what is cached now; looks at the scene where dials are to be chosen.
     fn plan(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError>;
 
     /// Renders; `cancel` is looked at between submissions.
     fn render(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError>;
 
@@ -70,18 +69,18 @@ impl RenderBackend for Renderer {
 
     fn plan(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError> {
-        Renderer::plan(self, resolved, cancel)
+        self.plan_prepared(prepared, cancel)
     }
 
     fn render(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
-        Renderer::render(self, resolved, cancel)
+        self.render_prepared(prepared, cancel)
     }
 
     fn warm(

@@ -2,7 +2,7 @@
 
 use tokio_util::sync::CancellationToken;
 
-use super::{RenderError, Renderer, bindable_bytes};
+use super::{Prepared, RenderError, Renderer, bindable_bytes};
 use crate::methods;
 use crate::plan::{self, NothingCached, Wanted, WarmCache};
 use crate::scene::ResolvedScene;
@@ -10,13 +10,22 @@ use crate::stats::{ChosenDials, Warning};
 use crate::tuning::choose::{self, Prospect};
 use crate::tuning::{cost, ladder};
 
+/// A scene whose dials were chosen.
+pub(super) struct Tuned {
+    /// The scene with them.
+    pub(super) rung: Prepared,
+    /// What they are, and why.
+    pub(super) chosen: ChosenDials,
+}
+
 impl Renderer {
-    /// The scene with dials chosen for what `quality` asks, and what they are; `None` where it asks for nothing.
+    /// The scene with dials chosen for what `quality` asks; `None` where it asks for nothing.
     pub(super) fn tuned(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
-    ) -> Result<Option<(ResolvedScene, ChosenDials)>, RenderError> {
+    ) -> Result<Option<Tuned>, RenderError> {
+        let resolved = prepared.resolved();
         let quality = &resolved.scene.quality;
         let chosen = if let Some(target) = quality.target_error {
             self.for_error(resolved, target, cancel)?
@@ -25,8 +34,9 @@ impl Renderer {
         } else {
             return Ok(None);
         };
-        let rung = with_cells(resolved, chosen.water_cells);
-        Ok(Some((rung, chosen)))
+        // Here and not with the request: trial renders on this device decide which scene it is whose facts and warnings count.
+        let rung = Prepared::new(with_cells(resolved, chosen.water_cells))?;
+        Ok(Some(Tuned { rung, chosen }))
     }
 
     fn for_error(

@@ -96,6 +96,14 @@ impl Surface {
         Rows { kind }
     }
 
+    /// Whether the bounds below and the shortest wave are others at other times; where they are not, they are the same to the bit.
+    pub fn bounds_change_with_time(&self) -> bool {
+        match &self.kind {
+            // Phases move, amplitudes and wavelengths do not.
+            Kind::Sines(_) => false,
+        }
+    }
+
     /// Upper bound of |height|, m.
     pub fn max_height_m(&self) -> f64 {
         match &self.kind {

@@ -36,6 +36,7 @@ mod physics;
 mod plans;
 #[path = "../../examples/mutants/plants.rs"]
 mod plants;
+mod prepared;
 mod project;
 mod reference;
 mod reference_closed_form;

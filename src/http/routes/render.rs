@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 
 use super::super::accept::{Representation, choose};
 use super::super::error::ApiError;
-use super::super::extract::{SceneBody, run_blocking};
+use super::super::extract::{SceneBody, prepare, run_blocking};
 use super::super::observe::Arrival;
 use super::super::problem::RenderProblems;
 use super::super::state::AppState;
@@ -109,7 +109,9 @@ pub async fn render(
     }
     state.require_trusted_device()?;
 
-    let mut frame = state.queue().render(resolved, arrival).await?;
+    let place = state.queue().place(arrival)?;
+    let prepared = prepare(resolved).await?;
+    let mut frame = state.queue().render(place, prepared).await?;
     env!("CARGO_PKG_VERSION").clone_into(&mut frame.stats.version);
     frame.stats.scene_hash.clone_from(&scene_hash);
     let (encoded, stats) = run_blocking(move || encode_frame(frame, &encoding, arrival)).await?;

@@ -10,7 +10,7 @@ use caustica::gpu::GpuError;
 use caustica::gpu_queue::RenderBackend;
 use caustica::mesh::Mesh;
 use caustica::plan::{Plan, PlannedPass};
-use caustica::render::{RenderError, SelfCheck, SelfCheckItem};
+use caustica::render::{Prepared, RenderError, SelfCheck, SelfCheckItem};
 use caustica::scene::{LayerName, Output, ResolvedScene};
 use caustica::stats::{AdapterStats, CacheStats, PassStats, Stats};
 use tokio_util::sync::CancellationToken;
@@ -204,14 +204,14 @@ impl RenderBackend for Fake {
 
     fn plan(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         _cancel: &CancellationToken,
     ) -> Result<Plan, RenderError> {
         self.control.note("plan");
         Ok(Plan {
             passes: vec![PlannedPass {
                 name: "surface".to_owned(),
-                reason: format!("{} waves", resolved.scene.water.waves.len()),
+                reason: format!("{} waves", prepared.resolved().scene.water.waves.len()),
                 runs: 1,
             }],
             peak_bytes: 4096,
@@ -221,11 +221,11 @@ impl RenderBackend for Fake {
 
     fn render(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
         let is_nan = self.act("render", cancel)?;
-        let mut frame = draw(resolved);
+        let mut frame = draw(prepared.resolved());
         if is_nan {
             for layer in frame.layers.values_mut() {
                 layer.data.fill(f32::NAN);
