@@ -57,6 +57,13 @@ impl Prepared {
         }
     }
 
+    /// The same scene with other facts than its own: for programs that carry light in other beam sets than the scene says.
+    #[must_use]
+    pub fn with_facts(mut self, change: impl FnOnce(&mut SceneFacts)) -> Self {
+        change(&mut self.facts);
+        self
+    }
+
     /// The scene and its meshes.
     pub fn resolved(&self) -> &ResolvedScene {
         &self.resolved
