@@ -32,7 +32,7 @@ pub(crate) const ALL: &[Plant] = &[
         what: "the reference refracts away from the normal along x",
     },
     Plant {
-        file: "src/reference/refract.rs",
+        file: "src/waves/sines.rs",
         from: "cos * c - sin * s",
         to: "cos * c + sin * s",
         binary: "cpu",
@@ -86,7 +86,7 @@ pub(crate) const ALL: &[Plant] = &[
         what: "a time budget is overspent instead of held",
     },
     Plant {
-        file: "src/waves/mod.rs",
+        file: "src/waves/sines.rs",
         from: "reduce_turns(turns_per_s * scene.time_s)",
         to: "reduce_turns(f64::from((turns_per_s * scene.time_s) as f32))",
         binary: "gpu",
@@ -98,7 +98,7 @@ pub(crate) const ALL: &[Plant] = &[
         what: "phases of waves are in f32",
     },
     Plant {
-        file: "src/waves/mod.rs",
+        file: "src/waves/sines.rs",
         from: "reduce_turns(origin_m.x * c.frequency_per_m.x)",
         to: "reduce_turns(f64::from((origin_m.x * c.frequency_per_m.x) as f32))",
         binary: "gpu",

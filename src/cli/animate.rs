@@ -16,7 +16,7 @@ use super::scene_flags::SceneArgs;
 use super::{files, picture, scene_file, summary};
 use crate::config::{Limits, RenderConfig};
 use crate::methods;
-use crate::render::Renderer;
+use crate::render::{Prepared, RenderError, Renderer};
 use crate::scene::ResolvedScene;
 
 /// Which frames to render, and where to.
@@ -80,9 +80,10 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
     if !missing.is_empty() {
         let mut renderer = Renderer::new(config)?;
         let progress = progress(missing.len());
+        let mut last = None;
         for (frame, time_s) in &missing {
-            scene.resolved.scene.time_s = *time_s;
-            let result = one(&mut renderer, &scene.resolved, &args.output.path(*frame));
+            let path = args.output.path(*frame);
+            let result = one(&mut renderer, &scene.resolved, &mut last, *time_s, &path);
             if result.is_err() {
                 progress.abandon();
                 eprintln!("frame {frame} failed");
@@ -139,8 +140,25 @@ fn is_there(path: &Path, scene_hash: &str) -> bool {
         .is_some_and(|hash| hash == scene_hash)
 }
 
-fn one(renderer: &mut Renderer, resolved: &ResolvedScene, path: &Path) -> Result<(), CliError> {
-    let picture = picture::make(renderer, resolved, Instant::now())?;
+/// Renders the moment `time_s` to a file. What does not depend on time is taken over from the frame before, if there is one.
+fn one(
+    renderer: &mut Renderer,
+    resolved: &ResolvedScene,
+    last: &mut Option<Prepared>,
+    time_s: f64,
+    path: &Path,
+) -> Result<(), CliError> {
+    let start = Instant::now();
+    let prepared = match last.take() {
+        Some(last) => last.at(time_s),
+        None => {
+            let mut first = resolved.clone();
+            first.scene.time_s = time_s;
+            Prepared::new(first)
+        }
+    };
+    let prepared = last.insert(prepared.map_err(RenderError::from)?);
+    let picture = picture::make(renderer, prepared, start)?;
     files::write_whole(path, &picture.bytes)
 }
 

@@ -6,8 +6,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::error::CliError;
 use crate::image::{Metadata, encode};
-use crate::render::Renderer;
-use crate::scene::ResolvedScene;
+use crate::render::{Prepared, Renderer};
 use crate::stats::Stats;
 
 /// A file in memory, and what it cost.
@@ -28,12 +27,12 @@ pub struct Picture {
 /// [`CliError::Render`] and [`CliError::Encode`].
 pub fn make(
     renderer: &mut Renderer,
-    resolved: &ResolvedScene,
+    prepared: &Prepared,
     start: Instant,
 ) -> Result<Picture, CliError> {
-    let mut frame = renderer.render(resolved, &CancellationToken::new())?;
+    let mut frame = renderer.render_prepared(prepared, &CancellationToken::new())?;
     let encode_start = Instant::now();
-    let encoding = resolved.scene.output.encoding();
+    let encoding = prepared.resolved().scene.output.encoding();
     let encoded = encode(&frame, &encoding, &Metadata::of(&frame.stats))?;
     frame.stats.warnings.extend(encoded.warnings);
     frame.stats.time_ms.encode = milliseconds_since(encode_start);

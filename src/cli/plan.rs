@@ -13,7 +13,7 @@ use super::{files, scene_file};
 use crate::config::{Limits, RenderConfig};
 use crate::plan::Plan;
 use crate::plan::{NothingCached, Wanted, plan_scene};
-use crate::render::{RenderError, Renderer};
+use crate::render::{Prepared, RenderError, Renderer};
 use crate::stats::ChosenDials;
 
 /// What to plan.
@@ -34,18 +34,16 @@ pub struct PlanArgs {
 /// A bad scene, or a plan over the memory budget.
 pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let scene = scene_file::load(&args.scene, None, limits)?;
-    let quality = &scene.resolved.scene.quality;
-    let plan = if quality.target_error.is_some() || quality.time_budget_ms.is_some() {
-        // Dials are chosen by looking at the scene.
-        Renderer::new(config)?.plan(&scene.resolved, &CancellationToken::new())?
+    let prepared = Prepared::new(scene.resolved).map_err(RenderError::from)?;
+    let plan = if prepared.asks_for_dials() {
+        // Dials are chosen by trial renders.
+        Renderer::new(config)?.plan_prepared(&prepared, &CancellationToken::new())?
     } else {
         // For an empty GPU: no device is opened, so a plan can be had anywhere.
-        let facts =
-            crate::methods::facts_with_warnings(&scene.resolved).map_err(RenderError::from)?;
         let empty = NothingCached {
             arena_bytes: config.level_map_budget_bytes(),
         };
-        plan_scene(&facts, Wanted::Frame, &empty)
+        plan_scene(prepared.facts(), Wanted::Frame, &empty)
             .map_err(RenderError::from)?
             .report
     };

@@ -9,7 +9,7 @@ use super::error::CliError;
 use super::scene_flags::SceneArgs;
 use super::{files, picture, scene_file, summary};
 use crate::config::{Limits, RenderConfig};
-use crate::render::Renderer;
+use crate::render::{Prepared, RenderError, Renderer};
 use crate::stats::Stats;
 
 /// What to render, and where to.
@@ -39,8 +39,9 @@ pub fn run(args: &RenderArgs, config: &RenderConfig, limits: &Limits) -> Result<
         files::check_place(path)?;
     }
     let scene = scene_file::load(&args.scene, Some(format), limits)?;
+    let prepared = Prepared::new(scene.resolved).map_err(RenderError::from)?;
     let mut renderer = Renderer::new(config)?;
-    let picture = picture::make(&mut renderer, &scene.resolved, start)?;
+    let picture = picture::make(&mut renderer, &prepared, start)?;
     files::write_whole(&args.output, &picture.bytes)?;
     if args.stats.is_some() {
         write_stats(stats_file(args), &picture.stats)?;

@@ -10,7 +10,7 @@ use super::{SceneFacts, lamp_window, window};
 use crate::physics::{fresnel, sky};
 use crate::scene::{Issue, Light, Output, ResolvedScene, Scene, SceneError};
 use crate::stats::Warning;
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// Most suns and point lights that the camera's pass has room for.
 pub const MOST_LIGHTS: usize = 64;
@@ -129,7 +129,7 @@ impl LightsFacts {
     pub(super) fn of(
         scene: &Scene,
         origin_m: DVec3,
-        surface: &WaterSurface,
+        surface: &Surface,
     ) -> Result<Self, SceneError> {
         let in_air = air_lights(&scene.lights, origin_m, surface)?;
         let sky = SkyFacts::of(&scene.lights, scene.water.ior);
@@ -250,7 +250,7 @@ impl SceneFacts {
 fn air_lights(
     lights: &[Light],
     origin_m: DVec3,
-    surface: &WaterSurface,
+    surface: &Surface,
 ) -> Result<Vec<AirLight>, SceneError> {
     let all: Vec<AirLight> = lights
         .iter()
@@ -273,7 +273,7 @@ fn air_lights(
 fn white_radiance(
     scene: &Scene,
     origin_m: DVec3,
-    surface: &WaterSurface,
+    surface: &Surface,
     sky_radiance: [f64; 3],
 ) -> f64 {
     let mean = |rgb: [f64; 3]| rgb.iter().sum::<f64>() / 3.0;

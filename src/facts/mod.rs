@@ -7,12 +7,14 @@
 //!   [`output`]: camera, layers, the receiver of a map;
 //! - `placement`: objects and the boxes of their level maps; `detail`: texels of those by their size in the picture; `source`: where
 //!   light comes from; `window`, `lamp_window`: through which water it reaches the receivers;
-//! - `warnings`: what is left out or sub-sampled; `unfollowed`, `stopped`: how much light that is.
+//! - `warnings`: what is left out or sub-sampled; `unfollowed`, `stopped`: how much light that is;
+//! - `moment`: what of all this changes with time.
 
 mod detail;
 mod lamp_window;
 pub mod lights;
 pub mod method;
+mod moment;
 pub mod output;
 pub mod placement;
 pub mod receivers;
@@ -32,7 +34,6 @@ pub use self::receivers::{FloorFacts, FloorMap, ReceiverFacts};
 pub use self::water::{Band, WaterFacts};
 use crate::scene::{Output, Quality, Receiver, ResolvedScene, SceneError};
 use crate::stats::Warning;
-use crate::waves::WaterSurface;
 
 /// The figures of a scene.
 #[derive(Clone, Debug)]
@@ -63,7 +64,7 @@ impl SceneFacts {
     pub fn of(resolved: &ResolvedScene, method: MethodFacts) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let origin_m = origin(resolved);
-        let surface = WaterSurface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z));
+        let surface = water::surface_around(scene, origin_m);
         let mut quality = scene.quality.clone();
         let output = OutputFacts::of(scene, origin_m);
         if output.is_floor_map() {

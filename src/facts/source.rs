@@ -8,7 +8,7 @@ use super::window::Rect;
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::refraction;
 use crate::scene::Light;
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// Largest cell of a point light's grid over its smallest, at most.
 const MOST_STRETCH: f64 = 9.0;
@@ -48,7 +48,7 @@ pub struct AirLight {
 
 impl Source {
     /// Source and power of a light around the local origin `origin_m`; `None` for skies and suns at or below the horizon.
-    pub fn of(light: &Light, origin_m: DVec3, surface: &WaterSurface) -> Option<(Self, [f64; 3])> {
+    pub fn of(light: &Light, origin_m: DVec3, surface: &Surface) -> Option<(Self, [f64; 3])> {
         match light {
             Light::Sky(_) => None,
             Light::Sun(sun) if sun.elevation_deg <= 0.0 => None,

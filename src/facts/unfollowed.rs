@@ -6,7 +6,7 @@ use super::source::Source;
 use super::{BeamSet, SceneFacts};
 use crate::physics::refraction::{normal_from_slope, refract_direction};
 use crate::stats::Warning;
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// Directions in which the steepest slopes are looked at.
 const SLOPES: u32 = 64;
@@ -30,7 +30,7 @@ pub fn waves_shade_waves(light: u32) -> Warning {
 }
 
 /// Whether slopes of these waves can look away from a light.
-pub(super) fn looks_away(surface: &WaterSurface, light: &BeamSet) -> bool {
+pub(super) fn looks_away(surface: &Surface, light: &BeamSet) -> bool {
     if surface.max_slope() == 0.0 {
         return false;
     }
@@ -53,7 +53,7 @@ pub(super) fn looks_away(surface: &WaterSurface, light: &BeamSet) -> bool {
 
 /// Whether a ray that these waves refract can come out of the water again: it has to be flatter than the steepest slope that could
 /// fall away under it.
-fn may_leave_again(surface: &WaterSurface, light: &BeamSet, ior: f64) -> bool {
+fn may_leave_again(surface: &Surface, light: &BeamSet, ior: f64) -> bool {
     let rim = surface.rim_slopes(SLOPES);
     let to_lights = match light.source {
         Source::Sun { to_light } => vec![to_light],

@@ -1,13 +1,15 @@
 //! The water of a scene.
 
-use crate::scene::Water;
-use crate::waves::WaterSurface;
+use glam::{DVec2, DVec3};
+
+use crate::scene::{Scene, Water};
+use crate::waves::Surface;
 
 /// The water: its surface at the moment of the frame, and its optics.
 #[derive(Clone, Debug)]
 pub struct WaterFacts {
     /// The waves around the local origin.
-    pub surface: WaterSurface,
+    pub surface: Surface,
     /// Index of refraction.
     pub ior: f64,
     /// Absorption a, 1/m.
@@ -17,7 +19,7 @@ pub struct WaterFacts {
 }
 
 impl WaterFacts {
-    pub(super) fn of(water: &Water, surface: WaterSurface) -> Self {
+    pub(super) fn of(water: &Water, surface: Surface) -> Self {
         Self {
             surface,
             ior: water.ior,
@@ -42,6 +44,11 @@ impl WaterFacts {
             rgb_weight: [1.0; 3],
         }
     }
+}
+
+/// The surface of `scene` at its moment, around the local origin `origin_m`.
+pub(super) fn surface_around(scene: &Scene, origin_m: DVec3) -> Surface {
+    Surface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z))
 }
 
 /// A band of wavelengths: the water as its light meets it, and what it gives to each colour channel.

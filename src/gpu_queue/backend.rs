@@ -9,8 +9,7 @@ use crate::frame::Frame;
 use crate::gpu::GpuError;
 use crate::mesh::Mesh;
 use crate::plan::Plan;
-use crate::render::{RenderError, Renderer, SelfCheck};
-use crate::scene::ResolvedScene;
+use crate::render::{Prepared, RenderError, Renderer, SelfCheck};
 use crate::stats::{AdapterStats, CacheStats};
 
 /// The renderer as the queue sees it. It is built on the GPU thread and never leaves it, so it need not be `Send`.
@@ -18,17 +17,20 @@ pub trait RenderBackend {
     /// Where it runs.
     fn adapter(&self) -> AdapterStats;
 
+    /// Hash of all that decides, besides the scene and the adapter, which dials are chosen where `quality` asks for an error or a time.
+    fn dial_basis(&self) -> String;
+
     /// What would run, given what is cached now; looks at the scene where dials are to be chosen.
     fn plan(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError>;
 
     /// Renders; `cancel` is looked at between submissions.
     fn render(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError>;
 
@@ -61,20 +63,24 @@ impl RenderBackend for Renderer {
         Renderer::adapter(self)
     }
 
+    fn dial_basis(&self) -> String {
+        Renderer::dial_basis(self)
+    }
+
     fn plan(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError> {
-        Renderer::plan(self, resolved, cancel)
+        self.plan_prepared(prepared, cancel)
     }
 
     fn render(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
-        Renderer::render(self, resolved, cancel)
+        self.render_prepared(prepared, cancel)
     }
 
     fn warm(

@@ -1,12 +1,13 @@
 //! One piece of work and who waits for it.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use tokio::sync::{OwnedSemaphorePermit, oneshot};
 use tokio_util::sync::CancellationToken;
 
 use super::backend::RenderBackend;
 use super::error::JobError;
+use super::place::Place;
 use crate::render::RenderError;
 
 /// What a job is told when it runs.
@@ -23,12 +24,10 @@ pub(super) struct Job {
     pub(super) work: Box<dyn Work>,
     /// Set when nobody waits any more.
     pub(super) cancel: CancellationToken,
-    /// When the request arrived.
-    pub(super) arrival: Instant,
-    /// When the job was handed in, its meshes looked up.
-    pub(super) handed_in: Instant,
-    /// The place in the queue and the right to the thread, given back when the work has ended.
-    pub(super) _permits: [OwnedSemaphorePermit; 2],
+    /// The place in the queue, given back when the work has ended.
+    pub(super) place: Place,
+    /// The right to the thread, given back with the place.
+    pub(super) _thread: OwnedSemaphorePermit,
 }
 
 /// Work that can be run again after a device loss.

@@ -13,6 +13,7 @@ use tokio_util::sync::CancellationToken;
 use super::backend::RenderBackend;
 use super::error::JobError;
 use super::job::{Job, JobContext, Typed};
+use super::place::{Held, Place};
 use super::status::{GpuState, GpuStatus};
 use super::worker::{Forgotten, Worker};
 use crate::cache::{WarmUp, WarmedMap};
@@ -20,8 +21,7 @@ use crate::frame::Frame;
 use crate::gpu::GpuError;
 use crate::mesh::Mesh;
 use crate::plan::Plan;
-use crate::render::{RenderError, SelfCheck};
-use crate::scene::ResolvedScene;
+use crate::render::{Prepared, RenderError, SelfCheck};
 
 /// Name of the GPU thread.
 pub const THREAD_NAME: &str = "caustica-gpu";
@@ -44,8 +44,9 @@ pub struct GpuQueue {
 #[derive(Debug)]
 struct Shared {
     settings: QueueSettings,
-    /// Jobs that wait or run: `waiting` + 1 places.
+    /// Jobs that are prepared, wait or run: `waiting` + 1 places.
     places: Arc<Semaphore>,
+    held: Held,
     /// The right to hand a job to the thread: 1 permit.
     thread: Arc<Semaphore>,
     sender: Mutex<Option<SyncSender<Job>>>,
@@ -68,7 +69,14 @@ impl GpuQueue {
         let (sender, jobs) = std::sync::mpsc::sync_channel(1);
         let (publish, status) = watch::channel(GpuStatus::default());
         let forgotten = Forgotten::default();
-        let worker = Worker::new(Box::new(factory), jobs, publish, Arc::clone(&forgotten));
+        let held = Held::default();
+        let worker = Worker::new(
+            Box::new(factory),
+            jobs,
+            publish,
+            Arc::clone(&forgotten),
+            held.clone(),
+        );
         let join = std::thread::Builder::new()
             .name(THREAD_NAME.to_owned())
             .spawn(move || worker.run())?;
@@ -76,6 +84,7 @@ impl GpuQueue {
             shared: Arc::new(Shared {
                 settings,
                 places: Arc::new(Semaphore::new(settings.waiting.saturating_add(1))),
+                held,
                 thread: Arc::new(Semaphore::new(1)),
                 sender: Mutex::new(Some(sender)),
                 join: Mutex::new(Some(join)),
@@ -86,14 +95,32 @@ impl GpuQueue {
         })
     }
 
-    /// Renders. The time from `arrival` until the thread took the job up goes into `stats.time_ms.queue`.
+    /// A place in the queue for a request that arrived at `arrival`, its meshes looked up; to be had before its scene is prepared.
+    ///
+    /// # Errors
+    /// [`JobError::QueueFull`], at once, and where nothing can run: [`JobError::Unavailable`], [`JobError::Cancelled`].
+    pub fn place(&self, arrival: Instant) -> Result<Place, JobError> {
+        let shared = &self.shared;
+        if let GpuState::Failed(why) = &shared.status.borrow().state {
+            return Err(JobError::Unavailable(why.clone()));
+        }
+        let permit = Arc::clone(&shared.places)
+            .try_acquire_owned()
+            .map_err(|_| self.refusal())?;
+        Ok(Place::new(arrival, shared.held.clone(), permit))
+    }
+
+    /// Renders. The time from arrival until the thread took the job up, less that of preparing the scene, goes into
+    /// `stats.time_ms.queue`.
     ///
     /// # Errors
     /// [`JobError`]; dropping the future cancels the job, and a job that has not started never does.
-    pub async fn render(&self, scene: ResolvedScene, arrival: Instant) -> Result<Frame, JobError> {
-        self.submit(arrival, move |backend, context| {
-            let mut frame = backend.render(&scene, context.cancel)?;
-            frame.stats.time_ms.queue = context.queued.as_secs_f64() * 1e3;
+    pub async fn render(&self, place: Place, prepared: Prepared) -> Result<Frame, JobError> {
+        self.submit(place, move |backend, context| {
+            let mut frame = backend.render(&prepared, context.cancel)?;
+            let queued_ms = context.queued.as_secs_f64() * 1e3;
+            // Preparing is in `plan`. It may have been done before the request arrived.
+            frame.stats.time_ms.queue = (queued_ms - prepared.took_ms()).max(0.0);
             Ok(frame)
         })
         .await
@@ -103,9 +130,9 @@ impl GpuQueue {
     ///
     /// # Errors
     /// As [`GpuQueue::render`].
-    pub async fn plan(&self, scene: ResolvedScene, arrival: Instant) -> Result<Plan, JobError> {
-        self.submit(arrival, move |backend, context| {
-            backend.plan(&scene, context.cancel)
+    pub async fn plan(&self, place: Place, prepared: Prepared) -> Result<Plan, JobError> {
+        self.submit(place, move |backend, context| {
+            backend.plan(&prepared, context.cancel)
         })
         .await
     }
@@ -120,7 +147,7 @@ impl GpuQueue {
         wanted: WarmUp,
         arrival: Instant,
     ) -> Result<Vec<WarmedMap>, JobError> {
-        self.submit(arrival, move |backend, context| {
+        self.submit(self.place(arrival)?, move |backend, context| {
             backend.warm(&mesh, &wanted, context.cancel)
         })
         .await
@@ -131,7 +158,7 @@ impl GpuQueue {
     /// # Errors
     /// As [`GpuQueue::render`].
     pub async fn self_check(&self, arrival: Instant) -> Result<SelfCheck, JobError> {
-        self.submit(arrival, |backend, _| {
+        self.submit(self.place(arrival)?, |backend, _| {
             backend.self_check().map_err(RenderError::from)
         })
         .await
@@ -158,7 +185,7 @@ impl GpuQueue {
         self.shared.settings
     }
 
-    /// Jobs that wait or run now.
+    /// Jobs that are prepared, wait or run now.
     pub fn depth(&self) -> usize {
         (self.shared.settings.waiting + 1).saturating_sub(self.shared.places.available_permits())
     }
@@ -176,7 +203,7 @@ impl GpuQueue {
         }
     }
 
-    async fn submit<T, F>(&self, arrival: Instant, call: F) -> Result<T, JobError>
+    async fn submit<T, F>(&self, place: Place, call: F) -> Result<T, JobError>
     where
         T: Send + 'static,
         F: FnMut(&mut dyn RenderBackend, &JobContext<'_>) -> Result<T, RenderError>
@@ -184,19 +211,11 @@ impl GpuQueue {
             + 'static,
     {
         let shared = &self.shared;
-        let handed_in = Instant::now();
-        if let GpuState::Failed(why) = &shared.status.borrow().state {
-            return Err(JobError::Unavailable(why.clone()));
-        }
-        let deadline = (arrival + shared.settings.deadline).into();
+        let deadline = (place.arrival + shared.settings.deadline).into();
         let late = |_| JobError::DeadlinePassed {
             deadline_s: shared.settings.deadline.as_secs_f64(),
         };
 
-        // A place, now or never.
-        let place = Arc::clone(&shared.places)
-            .try_acquire_owned()
-            .map_err(|_| self.refusal())?;
         // The thread, until the deadline. A future dropped here has queued nothing.
         let thread = timeout_at(deadline, Arc::clone(&shared.thread).acquire_owned())
             .await
@@ -209,9 +228,8 @@ impl GpuQueue {
         let job = Job {
             work: Box::new(Typed::new(call, reply)),
             cancel,
-            arrival,
-            handed_in,
-            _permits: [place, thread],
+            place,
+            _thread: thread,
         };
         match lock(&shared.sender).as_ref() {
             Some(sender) => sender.try_send(job).map_err(|_| JobError::Cancelled)?,

@@ -11,6 +11,7 @@ use tokio::sync::watch;
 use super::backend::RenderBackend;
 use super::error::JobError;
 use super::job::{Job, JobContext};
+use super::place::Held;
 use super::queue::lock;
 use super::status::{GpuState, GpuStatus};
 use crate::gpu::GpuError;
@@ -45,6 +46,7 @@ pub(super) struct Worker {
     jobs: Receiver<Job>,
     publish: watch::Sender<GpuStatus>,
     forgotten: Forgotten,
+    held: Held,
     last_try: Instant,
     /// What the level-map caches of devices that are gone have counted.
     gone: CacheStats,
@@ -56,12 +58,14 @@ impl Worker {
         jobs: Receiver<Job>,
         publish: watch::Sender<GpuStatus>,
         forgotten: Forgotten,
+        held: Held,
     ) -> Self {
         Self {
             factory,
             jobs,
             publish,
             forgotten,
+            held,
             last_try: Instant::now(),
             gone: CacheStats::default(),
         }
@@ -86,11 +90,13 @@ impl Worker {
         let opened = catch_unwind(AssertUnwindSafe(|| {
             let mut backend = (self.factory)()?;
             let check = backend.self_check()?;
-            Ok::<_, GpuError>((backend.adapter(), check, backend.level_map_cache(), backend))
+            let (adapter, dial_basis) = (backend.adapter(), backend.dial_basis());
+            let cache = backend.level_map_cache();
+            Ok::<_, GpuError>((adapter, dial_basis, check, cache, backend))
         }))
         .unwrap_or_else(|panic| Err(GpuError::Validation(panic_message(&*panic))));
         match opened {
-            Ok((adapter, check, cache, backend)) => {
+            Ok((adapter, dial_basis, check, cache, backend)) => {
                 let check = judged(check);
                 tracing::info!(
                     adapter = adapter.name,
@@ -102,6 +108,7 @@ impl Worker {
                 self.publish.send_modify(|status| {
                     status.state = GpuState::Ready;
                     status.adapter = Some(adapter);
+                    status.dial_basis = dial_basis;
                     status.self_check = Some(check);
                     status.level_maps = self.since_the_start(&cache);
                 });
@@ -140,8 +147,10 @@ impl Worker {
                 match polled {
                     Ok(Ok(())) => {
                         self.after_work(present);
-                        // Whoever held a deleted mesh would have been served by now.
-                        lock(&self.forgotten).retain(|_, deleted| deleted.elapsed() < IDLE_PERIOD);
+                        // Whoever looked up a deleted mesh would have a place by now.
+                        lock(&self.forgotten).retain(|_, deleted| {
+                            deleted.elapsed() < IDLE_PERIOD || self.held.since_before(*deleted)
+                        });
                     }
                     Ok(Err(error)) if is_loss(&error) => self.reopen(backend, &error.to_string()),
                     Ok(Err(error)) => tracing::warn!(%error, "the idle device reported an error"),
@@ -155,7 +164,7 @@ impl Worker {
 
     /// Runs one job to its end: an answer, an error, or the second loss.
     fn serve(&mut self, backend: &mut Option<Box<dyn RenderBackend>>, mut job: Job) {
-        let queued = job.arrival.elapsed();
+        let queued = job.place.arrival.elapsed();
         let mut may_retry = true;
         loop {
             // Between arrival and now everybody may have left, and the device too.
@@ -175,8 +184,8 @@ impl Worker {
                 queued,
             };
             let attempted = attempt(&mut job.work, &mut **present, &context, &self.forgotten);
-            // Jobs run in the order they were handed in: those that may hold a mesh deleted before this one have ended.
-            lock(&self.forgotten).retain(|_, deleted| *deleted >= job.handed_in);
+            // This job and those whose scenes are being prepared may hold meshes that were deleted since they took their places.
+            lock(&self.forgotten).retain(|_, deleted| self.held.since_before(*deleted));
             match attempted {
                 Ok(()) => {
                     self.record_job_time(started.elapsed());

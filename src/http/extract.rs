@@ -7,6 +7,7 @@ use axum::http::{HeaderMap, header};
 use super::error::ApiError;
 use super::state::AppState;
 use crate::methods;
+use crate::render::{Prepared, RenderError};
 use crate::scene::{ResolvedScene, Scene};
 
 /// Media types that a scene is read from.
@@ -80,6 +81,12 @@ pub(super) fn unsupported(found: Option<String>, accepted: &'static str) -> ApiE
         found: found.unwrap_or_else(|| "missing".to_owned()),
         accepted,
     }
+}
+
+/// Finds facts and warnings of a scene, for which rays are sent through its meshes: work for another thread than that of requests or
+/// of the GPU.
+pub(super) async fn prepare(resolved: ResolvedScene) -> Result<Prepared, ApiError> {
+    run_blocking(move || Ok(Prepared::new(resolved).map_err(RenderError::from)?)).await
 }
 
 /// Runs work that would hold up other requests on a thread of its own; a panic there becomes an error.

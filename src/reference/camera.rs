@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 
 use super::ReferenceError;
 use super::place::Place;
-use crate::facts::CameraFacts;
 use crate::physics::refraction::{normal_from_slope, reflect_direction, refract_direction};
+use crate::scene::{Camera, Output, ResolvedScene};
 
 /// Above the water by more than this counts as dry, m: rounding of a floor that lies in the water's plane.
 const DRY_M: f64 = 1e-9;
@@ -47,28 +47,77 @@ struct Ray {
     direction: DVec3,
 }
 
+/// The picture that a camera makes: which ray goes through which place of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Picture {
+    /// World position that is looked at, m.
+    target_m: DVec3,
+    /// World position of the eye, of parallel rays the middle of the image plane, m.
+    eye_m: DVec3,
+    /// Unit viewing direction.
+    forward: DVec3,
+    /// From the middle to the right edge of the picture, at unit distance, of parallel rays m.
+    right: DVec3,
+    /// From the middle to the upper edge.
+    up: DVec3,
+    /// Whether all rays are parallel.
+    parallel: bool,
+    /// Width and height, pixels.
+    pixels: DVec2,
+}
+
+impl Picture {
+    /// The one that `resolved` asks for.
+    pub(super) fn of(resolved: &ResolvedScene) -> Result<Self, ReferenceError> {
+        let (Output::View(output), Some(camera)) = (&resolved.scene.output, &resolved.scene.camera)
+        else {
+            return Err(ReferenceError::NoCamera);
+        };
+        let (eye_m, target_m, up) = camera.pose();
+        let (eye_m, target_m) = (DVec3::from(eye_m), DVec3::from(target_m));
+        let forward = (target_m - eye_m).normalize();
+        let right = forward.cross(DVec3::from(up)).normalize();
+        let (half_height, parallel) = match camera {
+            Camera::Perspective(c) => ((0.5 * c.vertical_fov_deg.to_radians()).tan(), false),
+            Camera::Orthographic(c) => (0.5 * c.height_m, true),
+        };
+        let pixels = DVec2::new(f64::from(output.width), f64::from(output.height));
+        Ok(Self {
+            target_m,
+            eye_m,
+            forward,
+            right: right * (half_height * (pixels.x / pixels.y)),
+            up: right.cross(forward) * half_height,
+            parallel,
+            pixels,
+        })
+    }
+
+    /// World (x, z) of what is looked at, m.
+    pub(super) fn middle_m(&self) -> DVec2 {
+        DVec2::new(self.target_m.x, self.target_m.z)
+    }
+}
+
 /// A camera in its place.
 #[derive(Clone)]
 pub(super) struct Viewer<'a> {
     place: &'a Place,
-    camera: &'a CameraFacts,
+    picture: &'a Picture,
+    /// The eye in local coordinates, m.
+    eye_m: DVec3,
     /// Whether the ray of a pixel starts above the water is asked per ray: an image plane may dip into the waves.
     stack: Vec<usize>,
 }
 
 impl<'a> Viewer<'a> {
-    pub(super) fn of(place: &'a Place) -> Result<Self, ReferenceError> {
-        let camera = place
-            .facts
-            .output
-            .camera
-            .as_ref()
-            .ok_or(ReferenceError::NoCamera)?;
-        Ok(Self {
+    pub(super) fn of(place: &'a Place, picture: &'a Picture) -> Self {
+        Self {
             place,
-            camera,
+            picture,
+            eye_m: picture.eye_m - place.origin_m,
             stack: Vec::new(),
-        })
+        }
     }
 
     /// What the middle of a pixel shows, numbered from the upper left; `None`: no surface.
@@ -104,19 +153,19 @@ impl<'a> Viewer<'a> {
 
     /// The ray through `at`, in pixels from the upper left corner.
     fn pixel_ray(&self, at: DVec2) -> Ray {
-        let camera = self.camera;
-        let right = 2.0 * at.x / f64::from(camera.width) - 1.0;
-        let up = 1.0 - 2.0 * at.y / f64::from(camera.height);
-        let offset = camera.right * right + camera.up * up;
-        if camera.orthographic {
+        let picture = self.picture;
+        let right = 2.0 * at.x / picture.pixels.x - 1.0;
+        let up = 1.0 - 2.0 * at.y / picture.pixels.y;
+        let offset = picture.right * right + picture.up * up;
+        if picture.parallel {
             Ray {
-                from_m: camera.eye + offset,
-                direction: camera.forward,
+                from_m: self.eye_m + offset,
+                direction: picture.forward,
             }
         } else {
             Ray {
-                from_m: camera.eye,
-                direction: (camera.forward + offset).normalize(),
+                from_m: self.eye_m,
+                direction: (picture.forward + offset).normalize(),
             }
         }
     }
@@ -130,9 +179,9 @@ impl<'a> Viewer<'a> {
         let side = if way == Way::Refracted { 1.0 } else { -1.0 };
         let t = self.place.meet_water(ray.from_m, ray.direction, side)?;
         let from_m = ray.from_m + ray.direction * t;
-        let slope = self.place.facts.water.surface.at(from_m.x, from_m.z).slope;
+        let slope = self.place.surface.at(from_m.x, from_m.z).slope;
         let normal = normal_from_slope(slope.x, slope.y) * side;
-        let ior = self.place.facts.water.ior;
+        let ior = self.place.ior;
         let direction = match way {
             Way::Refracted => refract_direction(ray.direction, normal, ior)?,
             Way::Left => refract_direction(ray.direction, normal, 1.0 / ior)?,
@@ -151,15 +200,13 @@ impl<'a> Viewer<'a> {
         let Ray { from_m, direction } = ray;
         let mut nearest_m = until_m;
         let mut found = None;
-        if let Some(floor) = &self.place.facts.receivers.floor
+        if let Some(floor) = &self.place.floor
             && with_floor
             && direction.y < 0.0
         {
             let t = (floor.y_m - from_m.y) / direction.y;
             let p = from_m + direction * t;
-            let inside = DVec2::new(p.x, p.z).cmpge(floor.rect.min).all()
-                && DVec2::new(p.x, p.z).cmple(floor.rect.max).all();
-            if t > 0.0 && t < nearest_m && inside {
+            if t > 0.0 && t < nearest_m && floor.spans(p) {
                 nearest_m = t;
                 let on_floor = DVec3::new(p.x, floor.y_m, p.z);
                 found = Some((on_floor, DVec3::Y, None));

@@ -2,7 +2,7 @@
 
 use super::ReferenceError;
 use crate::scene::{Light, Output, PointLight, Scene, Sun, Water};
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// The extinction of a water that can be counted in, 1/m.
 pub(super) fn check_water(water: &Water) -> Result<[f64; 3], ReferenceError> {
@@ -16,7 +16,7 @@ pub(super) fn check_water(water: &Water) -> Result<[f64; 3], ReferenceError> {
 }
 
 /// Refuses waves that are no numbers.
-pub(super) fn check_surface(surface: &WaterSurface) -> Result<(), ReferenceError> {
+pub(super) fn check_surface(surface: &Surface) -> Result<(), ReferenceError> {
     let height_m = surface.max_height_m();
     check("the waves' height, m", height_m, f64::MIN, f64::MAX)?;
     check("the waves' slope", surface.max_slope(), f64::MIN, f64::MAX)

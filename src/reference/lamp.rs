@@ -13,24 +13,23 @@ use super::trace::Ground;
 use super::window::{LampDrift, LightWindow, Target};
 use crate::physics::fresnel::{fresnel_reflectance, fresnel_transmittance};
 use crate::physics::refraction::refract_direction;
-use crate::waves::{WaterSurface, normal};
+use crate::waves::{Surface, normal};
 
 /// A point light in local coordinates.
 pub(super) struct Lamp<'a> {
-    surface: &'a WaterSurface,
+    surface: &'a Surface,
     position_m: DVec3,
     ior: f64,
     submerged: bool,
 }
 
 impl<'a> Lamp<'a> {
-    pub(super) fn new(surface: &'a WaterSurface, position_m: DVec3, ior: f64) -> Self {
-        let water_m = surface.at(position_m.x, position_m.z).height_m;
+    pub(super) fn new(surface: &'a Surface, position_m: DVec3, submerged: bool, ior: f64) -> Self {
         Self {
             surface,
             position_m,
             ior,
-            submerged: position_m.y <= water_m,
+            submerged,
         }
     }
 

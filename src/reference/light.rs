@@ -7,13 +7,91 @@ use glam::{DVec2, DVec3};
 use super::place::Place;
 use super::rings::Rings;
 use super::window::{LampDrift, LightWindow, Target, window_of};
-use crate::facts::source::Source;
-use crate::physics::refraction::{entry_distance, normal_from_slope};
-use crate::waves::SurfacePoint;
+use crate::physics::refraction::{
+    direction_to_light, entry_distance, normal_from_slope, refract_direction,
+};
+use crate::scene::{PointLight, Sun};
+use crate::waves::{Surface, SurfacePoint};
 
 /// Least area that a square shows to the light as a share of what it covers, for the number of rays: light that only grazes it under
 /// flat water may still strike it under waves.
 const LEAST_AREA: f64 = 0.25;
+
+/// Least height and depth that a point light's way through flat water is found for, m.
+const TINY_M: f64 = 1e-6;
+
+/// Where light comes from, local coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Source {
+    /// A sun.
+    Sun {
+        /// Unit direction to it.
+        to_light: DVec3,
+    },
+    /// A point light.
+    Lamp {
+        /// Where it is, m.
+        position_m: DVec3,
+        /// Whether it is under the water at its place, or on it.
+        submerged: bool,
+    },
+}
+
+impl Source {
+    /// A sun.
+    pub(super) fn of_sun(sun: &Sun) -> Self {
+        Self::Sun {
+            to_light: direction_to_light(
+                sun.elevation_deg.to_radians(),
+                sun.azimuth_deg.to_radians(),
+            ),
+        }
+    }
+
+    /// A point light under or over `surface`, around the local origin `origin_m`.
+    pub(super) fn of_lamp(lamp: &PointLight, origin_m: DVec3, surface: &Surface) -> Self {
+        let position_m = DVec3::from(lamp.position_m) - origin_m;
+        let water_m = surface.at(position_m.x, position_m.z).height_m;
+        Self::Lamp {
+            position_m,
+            submerged: position_m.y <= water_m,
+        }
+    }
+
+    /// Whether it is a point light over the water.
+    pub(super) fn is_lamp_in_air(&self) -> bool {
+        matches!(
+            self,
+            Self::Lamp {
+                submerged: false,
+                ..
+            }
+        )
+    }
+
+    /// Unit direction under flat water of the ray that meets `target_m`; `None` where none goes into the water.
+    pub(super) fn flat_direction(&self, target_m: DVec3, ior: f64) -> Option<DVec3> {
+        match *self {
+            Self::Sun { to_light } => refract_direction(-to_light, DVec3::Y, ior),
+            Self::Lamp {
+                position_m,
+                submerged: true,
+            } => Some((target_m - position_m).normalize_or(-DVec3::Y)),
+            Self::Lamp {
+                position_m,
+                submerged: false,
+            } => {
+                let aside_m = DVec2::new(target_m.x - position_m.x, target_m.z - position_m.z);
+                let distance_m = aside_m.length();
+                let depth_m = (-target_m.y).max(TINY_M);
+                let height_m = position_m.y.max(TINY_M);
+                let under_m = distance_m - entry_distance(height_m, depth_m, distance_m, ior);
+                let sideways_m = aside_m.normalize_or_zero() * under_m;
+                DVec3::new(sideways_m.x, -depth_m, sideways_m.y).try_normalize()
+            }
+        }
+    }
+}
 
 /// A light that the output counts.
 pub(super) struct PlacedLight {
@@ -41,7 +119,7 @@ impl PlacedLight {
     pub(super) fn toward(&self, p_m: DVec3) -> (DVec3, f64) {
         match self.source {
             Source::Sun { to_light } => (to_light, f64::INFINITY),
-            Source::Point { position_m } | Source::Submerged { position_m } => {
+            Source::Lamp { position_m, .. } => {
                 let way_m = position_m - p_m;
                 let distance_m = way_m.length();
                 (way_m / distance_m, distance_m)
@@ -53,13 +131,13 @@ impl PlacedLight {
     pub(super) fn facing_w_m2(&self, distance_m: f64) -> f64 {
         match self.source {
             Source::Sun { .. } => 1.0,
-            Source::Point { .. } | Source::Submerged { .. } => 1.0 / (distance_m * distance_m),
+            Source::Lamp { .. } => 1.0 / (distance_m * distance_m),
         }
     }
 
     /// The ray that enters at `water_m`; `None` where the water faces away from the light.
     pub(super) fn bend(&self, place: &Place, water_m: DVec2) -> Option<Bent> {
-        let SurfacePoint { height_m, slope } = place.facts.water.surface.at(water_m.x, water_m.y);
+        let SurfacePoint { height_m, slope } = place.surface.at(water_m.x, water_m.y);
         let from_m = DVec3::new(water_m.x, height_m, water_m.y);
         let (l, distance_m) = self.toward(from_m);
         let facing = l.y - slope.x * l.x - slope.y * l.z;
@@ -71,7 +149,7 @@ impl PlacedLight {
         let cos_i = normal.dot(l).clamp(0.0, 1.0);
         Some(Bent {
             from_m,
-            direction: -l / place.facts.water.ior + normal * turn(cos_i, place.facts.water.ior),
+            direction: -l / place.ior + normal * turn(cos_i, place.ior),
             facing: facing * self.facing_w_m2(distance_m),
             cos_i,
         })
@@ -79,13 +157,12 @@ impl PlacedLight {
 
     /// The water whose light can reach `target`.
     pub(super) fn window(&self, place: &Place, target: Target) -> LightWindow {
-        let facts = &place.facts;
         match (self.source, &self.drift) {
             (Source::Sun { to_light }, _) => {
-                window_of(&facts.water.surface, to_light, facts.water.ior, &[target])
+                window_of(&place.surface, to_light, place.ior, &[target])
             }
-            (Source::Point { position_m }, Some(drift)) => {
-                drift.window(facts.water.surface.max_height_m(), position_m, &[target])
+            (Source::Lamp { position_m, .. }, Some(drift)) => {
+                drift.window(place.surface.max_height_m(), position_m, &[target])
             }
             _ => LightWindow::empty(),
         }
@@ -102,7 +179,7 @@ impl PlacedLight {
         position_m: DVec3,
         (p_m, normal, square_m2): (DVec3, DVec3, f64),
     ) -> Rings {
-        let (surface, n) = (&place.facts.water.surface, place.facts.water.ior);
+        let (surface, n) = (&place.surface, place.ior);
         let foot_m = DVec2::new(position_m.x, position_m.z);
         let water_m = surface.at(foot_m.x, foot_m.y).height_m;
         let h = (position_m.y - water_m).max(f64::MIN_POSITIVE.sqrt());

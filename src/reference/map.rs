@@ -8,14 +8,14 @@ use super::checks::{check_surface, check_water, point_lights, suns};
 use super::floor::FloorMap;
 use super::lamp::Lamp;
 use super::lattice::{Lattice, SECOND_HALF, uniform};
+use super::light::Source;
 use super::occluders::Occluders;
 use super::tally::Tally;
 use super::trace::{Beam, Ground};
 use super::window::{LightWindow, Target, window_of};
 use super::{ReferenceError, ReferenceSettings};
-use crate::physics::refraction::direction_to_light;
 use crate::scene::{ResolvedScene, Scene};
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// How the error falls with the number of rays N, as N to this power; measured 0.72 … 0.75 on waves that fold.
 pub(super) const ORDER: f64 = 0.73;
@@ -110,17 +110,9 @@ pub(super) fn count(
     }
 }
 
-/// Where counted light comes from.
-enum CountedSource {
-    /// A sun, by the direction to it.
-    Sun(DVec3),
-    /// A point light, by its place.
-    Lamp(DVec3),
-}
-
 /// One light and its window.
 struct CountedLight {
-    source: CountedSource,
+    source: Source,
     /// W/m² on a plane facing the sun, or W/sr of the point light.
     power: [f64; 3],
     window: LightWindow,
@@ -140,7 +132,7 @@ struct Counter<'a, const K: usize> {
     scene: &'a Scene,
     map: FloorMap,
     occluders: Occluders,
-    surface: WaterSurface,
+    surface: Surface,
     suns: Vec<CountedLight>,
     extinction_per_m: [f64; K],
     /// Which coefficient each channel has.
@@ -156,7 +148,7 @@ impl<'a, const K: usize> Counter<'a, K> {
         let scene = &resolved.scene;
         let map = FloorMap::of(scene)?;
         let occluders = Occluders::of(resolved, map.origin_m)?;
-        let surface = WaterSurface::of(scene).recentred(map.origin_m);
+        let surface = Surface::of(scene).recentred(map.origin_m);
         check_surface(&surface)?;
         let size_m = map.size_m();
         let mut targets = vec![Target {
@@ -164,25 +156,28 @@ impl<'a, const K: usize> Counter<'a, K> {
             max_m: DVec3::new(size_m.x, -map.depth_m, size_m.y),
         }];
         targets.extend(occluders.bounds.iter().copied());
-        let suns = suns(scene)?.into_iter().map(|sun| {
-            let to_light =
-                direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians());
-            CountedLight {
-                source: CountedSource::Sun(to_light),
-                power: sun.irradiance_w_m2,
-                window: window_of(&surface, to_light, scene.water.ior, &targets),
-            }
-        });
         let corner_m = DVec3::new(map.origin_m.x, scene.water.level_m, map.origin_m.y);
-        let lamps = point_lights(scene)?.into_iter().map(|point| {
-            let position_m = DVec3::from(point.position_m) - corner_m;
-            CountedLight {
-                source: CountedSource::Lamp(position_m),
-                power: point.intensity_w_sr,
-                window: Lamp::new(&surface, position_m, scene.water.ior).window(&targets),
-            }
+        let suns = suns(scene)?.into_iter();
+        let suns = suns.map(|sun| (Source::of_sun(sun), sun.irradiance_w_m2));
+        let lamps = point_lights(scene)?.into_iter().map(|lamp| {
+            let source = Source::of_lamp(lamp, corner_m, &surface);
+            (source, lamp.intensity_w_sr)
         });
-        let suns = suns.chain(lamps).collect();
+        let ior = scene.water.ior;
+        let suns = suns
+            .chain(lamps)
+            .map(|(source, power)| CountedLight {
+                source,
+                power,
+                window: match source {
+                    Source::Sun { to_light } => window_of(&surface, to_light, ior, &targets),
+                    Source::Lamp {
+                        position_m,
+                        submerged,
+                    } => Lamp::new(&surface, position_m, submerged, ior).window(&targets),
+                },
+            })
+            .collect();
         Ok(Self {
             scene,
             map,
@@ -271,14 +266,14 @@ impl<'a, const K: usize> Counter<'a, K> {
                 let shift = DVec2::new(uniform(key), uniform(key + 1));
                 // All rays of a point light lie in one cell, see `lamp`.
                 let (cell_m, texels) = match sun.source {
-                    CountedSource::Sun(_) => (self.map.texel_m, 1.0),
-                    CountedSource::Lamp(_) => (DVec2::ONE, self.texels_in(&sun.window)),
+                    Source::Sun { .. } => (self.map.texel_m, 1.0),
+                    Source::Lamp { .. } => (DVec2::ONE, self.texels_in(&sun.window)),
                 };
                 let points = points_per_texel * texels;
                 let lattice = Lattice::new(points, cell_m, shift, half == 1);
                 points_per_texel = SECOND_HALF * lattice.points_per_texel(cell_m) / texels;
                 let tally = match sun.source {
-                    CountedSource::Sun(to_light) => Beam {
+                    Source::Sun { to_light } => Beam {
                         ground,
                         surface: &self.surface,
                         to_light,
@@ -286,8 +281,16 @@ impl<'a, const K: usize> Counter<'a, K> {
                         window: sun.window,
                     }
                     .trace(&lattice, counted, cancelled),
-                    CountedSource::Lamp(position_m) => Lamp::new(&self.surface, position_m, ior)
-                        .trace(&ground, &sun.window, &lattice, counted, cancelled),
+                    Source::Lamp {
+                        position_m,
+                        submerged,
+                    } => Lamp::new(&self.surface, position_m, submerged, ior).trace(
+                        &ground,
+                        &sun.window,
+                        &lattice,
+                        counted,
+                        cancelled,
+                    ),
                 };
                 self.add_irradiance(&tally, sun, irradiance);
                 match &mut both {

@@ -1,12 +1,12 @@
-//! The light on an object, in the texels of the map that its level map spans.
+//! The light on an object, in the texels of its map.
 //!
-//! Plain rays go down all over the water that can light the object, or straight from a point light under water. Those that strike the surface that is asked for, the first along
-//! the map's axis or one behind it, are counted in the texel they strike; the cells of the lattice are the texels' shadows on the
-//! water, so flat water gives every texel of the first surface the same count.
+//! Plain rays go down all over the water that can light the object, or straight from a point light under water. Those that strike
+//! the surface that is asked for, the first along the map's axis or one behind it, are counted in the texel they strike; the cells
+//! of the lattice are the texels' shadows on the water, so flat water gives every texel of the first surface the same count.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::lattice::Row;
@@ -16,8 +16,8 @@ use super::object_rays::{ObjectRays, Ray, Volley};
 use super::place::Place;
 use super::slanted::{halves, rows};
 use super::tally::add_to;
+use super::texels::TexelGrid;
 use super::{ReferenceError, Truth, TruthKind, TruthSettings};
-use crate::facts::placement::LevelBox;
 use crate::physics::attenuation::transmission;
 use crate::scene::ResolvedScene;
 
@@ -31,40 +31,32 @@ const SAME_SURFACE: f64 = 1e-7;
 /// Landed and stopped light per texel: (r, g, b) and the same again, W.
 type Texels = Vec<[f64; 6]>;
 
-/// The truth about the map on object `index`.
+/// The truth about the map on object `index`, of the surface that `layer` others hide along the map's axis.
 pub(super) fn object_map(
     resolved: &ResolvedScene,
-    index: u32,
+    (index, layer): (u32, u32),
     settings: &TruthSettings,
     progress: &(dyn Fn(f64) + Sync),
     cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Result<Truth, ReferenceError> {
-    let place = Place::of(resolved)?;
-    let object = index as usize;
-    if object >= place.occluders.bounds.len() {
-        return Err(ReferenceError::NoObject {
+    let (object, objects) = (index as usize, &resolved.scene.objects);
+    let [x_m, _, z_m] = objects
+        .get(object)
+        .map(|object| object.translation_m)
+        .ok_or(ReferenceError::NoObject {
             index,
-            objects: place.occluders.bounds.len(),
-        });
-    }
+            objects: objects.len(),
+        })?;
+    let place = Place::of(resolved, DVec2::new(x_m, z_m))?;
     let side = resolved.scene.quality.level_map_texels;
-    let facts = &place.facts.receivers.objects[object];
-    let light = place.lights.first().filter(|_| facts.wet);
-    let axis = light.and_then(|light| {
-        let middle_m = facts.wet_middle();
-        light.source.direction_at(middle_m, place.facts.water.ior)
-    });
-    let (Some(light), Some(axis)) = (light, axis) else {
+    // The first light says along which axis the map is seen.
+    let light = place.lights.first();
+    let grid = light.and_then(|l| TexelGrid::of(resolved, object, &place, &l.source));
+    let (Some(light), Some(grid)) = (light, grid) else {
         progress(1.0);
         return Ok(dark(side));
     };
-    let level_box = LevelBox::new(facts, &resolved.meshes[object], axis, 1);
-    let counter = Counter::new(
-        &place,
-        light,
-        &level_box,
-        (object, place.facts.output.receiver_layer),
-    );
+    let counter = Counter::new(&place, light, &grid, (object, layer));
     let cosines = counter.cosines(side);
     let (halves, rays) = counter.rounds(&cosines, settings, progress, cancelled)?;
     let [a, b] = &halves;
@@ -112,14 +104,10 @@ fn shadow(a: &Texels, b: &Texels, cosines: &[Option<f64>]) -> Vec<f64> {
 struct Counter<'a> {
     place: &'a Place,
     light: &'a PlacedLight,
-    level_box: &'a LevelBox,
+    grid: &'a TexelGrid,
     object: usize,
     /// How many of the object's surfaces lie before the one that is asked for, along the axis.
     layer: u32,
-    /// Where (u, v, s) is (0, 0, 0), local, m.
-    corner_m: DVec3,
-    /// From a texel to the next along u and v, m.
-    edges_m: [DVec3; 2],
     /// What may strike it; `None`: nothing.
     rays: Option<ObjectRays<'a>>,
     same_surface_m: f64,
@@ -129,49 +117,25 @@ impl<'a> Counter<'a> {
     fn new(
         place: &'a Place,
         light: &'a PlacedLight,
-        level_box: &'a LevelBox,
+        grid: &'a TexelGrid,
         (object, layer): (usize, u32),
     ) -> Self {
         let bounds = place.occluders.bounds[object];
         let size_m = (bounds.max_m - bounds.min_m).length();
-        // A texel's edges across the axis: the columns of the inverse of the map's rows.
-        let rows = level_box.map_from_local.map(DVec4::truncate);
-        let [u_m, v_m] = [
-            rows[1].cross(rows[2]) / rows[0].dot(rows[1].cross(rows[2])),
-            rows[2].cross(rows[0]) / rows[1].dot(rows[2].cross(rows[0])),
-        ];
-        let corner = -DVec3::new(
-            level_box.map_from_local[0].w,
-            level_box.map_from_local[1].w,
-            level_box.map_from_local[2].w,
-        );
-        let along_m = level_box.axis / level_box.s_per_m;
-        let corner_m = u_m * corner.x + v_m * corner.y + along_m * corner.z;
         Self {
             place,
             light,
-            level_box,
+            grid,
             object,
             layer,
-            corner_m,
-            edges_m: [u_m, v_m],
-            rays: ObjectRays::new(place, light, bounds, (corner_m, [u_m, v_m])),
+            rays: ObjectRays::new(place, light, bounds, (grid.corner_m, grid.edges_m)),
             same_surface_m: SAME_SURFACE * size_m,
         }
     }
 
-    /// (u, v, s) of a local point.
-    fn to_map(&self, p_m: DVec3) -> DVec3 {
-        let [u, v, s] = self
-            .level_box
-            .map_from_local
-            .map(|row| row.dot(p_m.extend(1.0)));
-        DVec3::new(u, v, s)
-    }
-
     /// |n·axis| of the surface that is asked for, along the axis at each texel's centre.
     fn cosines(&self, side: u32) -> Vec<Option<f64>> {
-        let axis = self.level_box.axis;
+        let axis = self.grid.axis;
         let bounds = self.place.occluders.bounds[self.object];
         let size_m = (bounds.max_m - bounds.min_m).length();
         let middle_m = (bounds.min_m + bounds.max_m) * 0.5;
@@ -179,7 +143,7 @@ impl<'a> Counter<'a> {
             .into_par_iter()
             .map(|texel| {
                 let st = DVec2::new(f64::from(texel % side), f64::from(texel / side)) + 0.5;
-                let texel_m = self.corner_m + self.edges_m[0] * st.x + self.edges_m[1] * st.y;
+                let texel_m = self.grid.place_m(st);
                 let before_m = (middle_m - texel_m).dot(axis) - size_m;
                 let mut stack = Vec::new();
                 let mut from_m = texel_m + axis * before_m;
@@ -296,7 +260,7 @@ impl<'a> Counter<'a> {
             before_m,
         } = scratch;
         occluders.crossings(self.object, from_m, to_m, stack, crossings);
-        let axis = self.level_box.axis;
+        let axis = self.grid.axis;
         let first = crossings.iter().find(|&&fraction| {
             let p_m = from_m.lerp(to_m, fraction);
             let same_m = self.same_surface_m;
@@ -309,12 +273,9 @@ impl<'a> Counter<'a> {
         });
         let Some(&fraction) = first else { return };
         let p_m = from_m.lerp(to_m, fraction);
-        let at = self.to_map(p_m).truncate();
-        let side = f64::from(self.level_box.key.texels);
-        if at.min_element() < 0.0 || at.max_element() >= side {
+        let Some(texel) = self.grid.texel_at(p_m) else {
             return; // rounding: the map has a rim
-        }
-        let texel = at.y as usize * self.level_box.key.texels as usize + at.x as usize;
+        };
         if self.out_of_water(from_m, p_m) {
             return;
         }
@@ -328,7 +289,7 @@ impl<'a> Counter<'a> {
         let first_channel = if stopped { 3 } else { 0 };
         for c in 0..3 {
             sum[texel][first_channel + c] += flux
-                * transmission(self.place.facts.water.extinction_per_m[c], path_m)
+                * transmission(self.place.extinction_per_m[c], path_m)
                 * per_point
                 * self.light.power[c];
         }
@@ -341,15 +302,11 @@ impl<'a> Counter<'a> {
 
     /// Whether the way between two points goes through the floor.
     fn behind_floor(&self, from_m: DVec3, to_m: DVec3) -> bool {
-        let Some(floor) = &self.place.facts.receivers.floor else {
+        let Some(floor) = &self.place.floor else {
             return false;
         };
         let fraction = (from_m.y - floor.y_m) / (from_m.y - to_m.y);
-        let p = from_m.lerp(to_m, fraction);
-        let p = DVec2::new(p.x, p.z);
-        (0.0..=1.0).contains(&fraction)
-            && p.cmpge(floor.rect.min).all()
-            && p.cmple(floor.rect.max).all()
+        (0.0..=1.0).contains(&fraction) && floor.spans(from_m.lerp(to_m, fraction))
     }
 
     /// W/m² on the surface of each texel: its flux over the area it shows to the axis, times the cosine.
@@ -357,7 +314,7 @@ impl<'a> Counter<'a> {
         sums.iter()
             .zip(cosines)
             .map(|(sum, cosine)| {
-                let per_m2 = self.level_box.density_per_flux * cosine.unwrap_or(0.0);
+                let per_m2 = self.grid.per_m2 * cosine.unwrap_or(0.0);
                 [sum[0] * per_m2, sum[1] * per_m2, sum[2] * per_m2]
             })
             .collect()

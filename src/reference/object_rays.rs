@@ -6,13 +6,12 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::lattice::{Lattice, Row};
-use super::light::PlacedLight;
+use super::light::{PlacedLight, Source};
 use super::place::Place;
 use super::refract::{BLOCK, Block, RowRefractor};
 use super::rings::Rings;
 use super::slanted::Cells;
 use super::window::{LightWindow, Target};
-use crate::facts::source::Source;
 use crate::physics::fresnel::fresnel_transmittance;
 
 /// Part of the object's size that rays go on beyond it.
@@ -118,19 +117,25 @@ impl<'a> ObjectRays<'a> {
         let texel = edges_m[0].cross(edges_m[1]);
         let (origin, part) = match light.source {
             Source::Sun { to_light } => {
-                let flat = light.source.direction_at(middle_m, place.facts.water.ior)?;
+                let flat = light.source.flat_direction(middle_m, place.ior)?;
                 let cells = Cells::of(corner_m, edges_m[0], edges_m[1], flat);
                 let part = cells.around(&light.window(place, bounds));
                 (Origin::Sun(cells, to_light), part)
             }
-            Source::Point { position_m } => {
+            Source::Lamp {
+                position_m,
+                submerged: false,
+            } => {
                 // Texels in the middle of the object: others are lit by as much of the rings, or nearly.
                 let texel = (middle_m, texel.normalize_or_zero(), texel.length());
                 let rings = light.rings(place, position_m, texel);
                 let part = rings.around_window(&light.window(place, bounds));
                 (Origin::Lamp(rings), part)
             }
-            Source::Submerged { position_m } => {
+            Source::Lamp {
+                position_m,
+                submerged: true,
+            } => {
                 let (cone, part) = Cone::of(position_m, middle_m, 0.5 * size_m, texel.length());
                 (Origin::Cone(cone), part)
             }
@@ -148,13 +153,13 @@ impl<'a> ObjectRays<'a> {
 
     /// The rays that start at the points of `lattice`.
     pub(super) fn volley(&'a self, lattice: Lattice) -> Volley<'a> {
-        let facts = &self.place.facts;
+        let place = self.place;
         let refractor = match &self.origin {
             Origin::Sun(cells, to_light) => Some(RowRefractor::new(
-                &facts.water.surface,
+                &place.surface,
                 cells.basis_m * lattice.step_m(),
                 *to_light,
-                facts.water.ior,
+                place.ior,
                 self.end_m,
             )),
             Origin::Lamp(_) | Origin::Cone(_) => None,
@@ -186,7 +191,7 @@ impl<'a> ObjectRays<'a> {
             from_m: bent.from_m,
             to_m,
             path_m,
-            flux: m2 * bent.facing * fresnel_transmittance(bent.cos_i, self.place.facts.water.ior),
+            flux: m2 * bent.facing * fresnel_transmittance(bent.cos_i, self.place.ior),
         })
     }
 }
@@ -244,7 +249,7 @@ impl Volley<'_> {
                 }
                 let top_m = start_m + step_m * i as f64;
                 each(&Ray {
-                    from_m: DVec3::new(top_m.x, block.height_m[i], top_m.y),
+                    from_m: DVec3::new(top_m.x, block.water.height_m[i], top_m.y),
                     to_m: DVec3::new(block.x_m[i], -self.rays.end_m, block.z_m[i]),
                     path_m: block.path_m[i],
                     flux: block.entered[i] * cells.area_m2(),

@@ -147,13 +147,12 @@ impl Patch {
         may_be_shaded: bool,
         stack: &mut Vec<usize>,
     ) -> bool {
-        if let Some(floor) = &place.facts.receivers.floor
+        if let Some(floor) = &place.floor
             && self.object.is_some()
             && to_m.y < floor.y_m
         {
-            let p = from_m.lerp(to_m, (floor.y_m - from_m.y) / (to_m.y - from_m.y));
-            let p = DVec2::new(p.x, p.z);
-            if p.cmpge(floor.rect.min).all() && p.cmple(floor.rect.max).all() {
+            let through_m = from_m.lerp(to_m, (floor.y_m - from_m.y) / (to_m.y - from_m.y));
+            if floor.spans(through_m) {
                 return true;
             }
         }
@@ -193,7 +192,7 @@ impl<'a> Search<'a> {
         let bounds = patch.bounds();
         let window = light.window(place, bounds);
         let (corner_m, sides_m) = patch.sides_m();
-        let crest_m = place.facts.water.surface.max_height_m();
+        let crest_m = place.surface.max_height_m();
         let water = Target {
             min_m: DVec3::new(window.min_m.x, bounds.min_m.y, window.min_m.y),
             max_m: DVec3::new(window.max_m.x, crest_m, window.max_m.y),
@@ -295,7 +294,7 @@ impl<'a> Search<'a> {
         if cosine <= 0.0 {
             return Reach::Unknown;
         }
-        let ior = self.place.facts.water.ior;
+        let ior = self.place.ior;
         let least = (cosine - bend - spread).max(0.0);
         let cos_t = (1.0 - (1.0 - least * least) / (ior * ior))
             .max(1e-12)
@@ -344,9 +343,9 @@ impl<'a> Search<'a> {
         {
             return;
         }
-        let facts = &self.place.facts;
-        let entered = m2 * ray.facing * fresnel_transmittance(ray.cos_i, facts.water.ior);
-        let blocked = patch.blocked(self.place, ray.from_m, to_m, self.may_be_shaded, stack);
-        sum.book(entered, facts.water.extinction_per_m, path_m, blocked);
+        let place = self.place;
+        let entered = m2 * ray.facing * fresnel_transmittance(ray.cos_i, place.ior);
+        let blocked = patch.blocked(place, ray.from_m, to_m, self.may_be_shaded, stack);
+        sum.book(entered, place.extinction_per_m, path_m, blocked);
     }
 }

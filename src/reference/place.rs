@@ -1,129 +1,140 @@
 //! A scene in local coordinates, as the engines for views and objects need it.
 
-use std::cell::OnceCell;
-use std::f64::consts::TAU;
+use std::cell::LazyCell;
 
 use glam::{DVec2, DVec3};
 
 use super::ReferenceError;
 use super::checks::{check_surface, check_water, point_lights, suns};
-use super::light::PlacedLight;
+use super::light::{PlacedLight, Source};
 use super::occluders::Occluders;
+use super::sky::Sky;
 use super::window::LampDrift;
-use crate::facts::SceneFacts;
-use crate::facts::source::Source;
-use crate::physics::sky::sky_irradiance;
-use crate::physics::turns::sin_cos_turns;
-use crate::scene::{Light, ResolvedScene};
-use crate::waves::SurfacePoint;
+use crate::scene::ResolvedScene;
+use crate::waves::{Surface, SurfacePoint};
 
-/// Water, meshes and lights around the local origin of [`SceneFacts`].
+/// The floor, local coordinates, m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Floor {
+    /// Height (negative).
+    pub(super) y_m: f64,
+    /// Lower corner (x, z).
+    min_m: DVec2,
+    /// Upper corner (x, z).
+    max_m: DVec2,
+}
+
+impl Floor {
+    /// Whether it lies above or below `p_m`, or there.
+    pub(super) fn spans(&self, p_m: DVec3) -> bool {
+        let p_m = DVec2::new(p_m.x, p_m.z);
+        p_m.cmpge(self.min_m).all() && p_m.cmple(self.max_m).all()
+    }
+}
+
+/// Water, floor, meshes and lights around a local origin on the water at rest.
 pub(super) struct Place {
-    /// Camera, floor and sky, as the scene says.
-    pub(super) facts: SceneFacts,
+    /// World position of the local origin, m.
+    pub(super) origin_m: DVec3,
+    /// The waves.
+    pub(super) surface: Surface,
+    /// Index of refraction.
+    pub(super) ior: f64,
+    /// Extinction, 1/m.
+    pub(super) extinction_per_m: [f64; 3],
+    /// The floor.
+    pub(super) floor: Option<Floor>,
+    /// All skies.
+    sky: Sky,
     /// Meshes, in the same coordinates.
     pub(super) occluders: Occluders,
     /// Suns above the horizon and point lights above the floor that the output counts: first the suns.
     pub(super) lights: Vec<PlacedLight>,
     /// Largest second derivative of the water's height along any direction, 1/m.
-    pub(super) bend_per_m: f64,
+    bend_per_m: f64,
     /// Largest third derivative, 1/m².
-    pub(super) twist_per_m2: f64,
+    twist_per_m2: f64,
     /// Steepest slope that the water can have.
     pub(super) steepest: f64,
 }
 
 impl Place {
-    pub(super) fn of(resolved: &ResolvedScene) -> Result<Self, ReferenceError> {
+    /// The scene around `middle_m`, world (x, z): what is asked about should lie near it, so that it is exact far from the world's
+    /// origin too.
+    pub(super) fn of(resolved: &ResolvedScene, middle_m: DVec2) -> Result<Self, ReferenceError> {
         let scene = &resolved.scene;
-        check_water(&scene.water)?;
+        let extinction_per_m = check_water(&scene.water)?;
         let (suns, lamps) = (suns(scene)?, point_lights(scene)?);
-        let facts = crate::methods::facts(resolved)
-            .map_err(|error| ReferenceError::Scene(error.to_string()))?;
-        check_surface(&facts.water.surface)?;
-        let occluders = Occluders::of(resolved, DVec2::new(facts.origin_m.x, facts.origin_m.z))?;
-        let suns = suns.into_iter().cloned().map(Light::Sun);
-        let counted = suns.chain(lamps.into_iter().cloned().map(Light::Point));
-        let drift = OnceCell::new();
-        let lights = counted
-            .filter_map(|light| Source::of(&light, facts.origin_m, &facts.water.surface))
-            .filter(|(source, power)| {
-                let floor_y_m = facts.receivers.floor.as_ref().map(|floor| floor.y_m);
-                let lamp_y_m = source.position_m().map(|p| p.y);
-                let buried = lamp_y_m
-                    .zip(floor_y_m)
-                    .is_some_and(|(lamp, floor)| lamp <= floor);
-                !buried && power.iter().any(|&e| e > 0.0)
-            })
+        let surface = Surface::of(scene).recentred(middle_m);
+        check_surface(&surface)?;
+        let occluders = Occluders::of(resolved, middle_m)?;
+        let origin_m = DVec3::new(middle_m.x, scene.water.level_m, middle_m.y);
+        let ior = scene.water.ior;
+        let floor = scene.floor.as_ref().map(|floor| {
+            let center_m = DVec2::from(floor.center_m) - middle_m;
+            let half_m = DVec2::from(floor.size_m) * 0.5;
+            Floor {
+                y_m: -floor.depth_m,
+                min_m: center_m - half_m,
+                max_m: center_m + half_m,
+            }
+        });
+        let drift = LazyCell::new(|| LampDrift::of(&surface, ior));
+        let suns = suns
+            .into_iter()
+            .map(|sun| (Source::of_sun(sun), sun.irradiance_w_m2));
+        let lamps = lamps.into_iter().map(|lamp| {
+            let source = Source::of_lamp(lamp, origin_m, &surface);
+            (source, lamp.intensity_w_sr)
+        });
+        let is_buried = |source: &Source| match (source, &floor) {
+            (Source::Lamp { position_m, .. }, Some(floor)) => position_m.y <= floor.y_m,
+            _ => false,
+        };
+        let lights = suns
+            .chain(lamps)
+            .filter(|(source, power)| !is_buried(source) && power.iter().any(|&e| e > 0.0))
             .map(|(source, power)| PlacedLight {
                 source,
                 power,
-                drift: matches!(source, Source::Point { .. }).then(|| {
-                    *drift.get_or_init(|| LampDrift::of(&facts.water.surface, facts.water.ior))
-                }),
+                drift: source.is_lamp_in_air().then(|| *drift),
             })
             .collect();
-        let derivative = |order: i32| -> f64 {
-            let waves = facts.water.surface.components.iter();
-            waves
-                .map(|c| c.amplitude_m * (TAU * c.frequency_per_m.length()).powi(order))
-                .sum()
-        };
         Ok(Self {
-            steepest: facts.water.surface.max_slope(),
-            bend_per_m: derivative(2),
-            twist_per_m2: derivative(3),
-            facts,
+            origin_m,
+            ior,
+            extinction_per_m,
+            floor,
+            sky: Sky::of(scene, extinction_per_m),
             occluders,
             lights,
+            bend_per_m: surface.max_second_derivative_per_m(),
+            twist_per_m2: surface.max_third_derivative_per_m2(),
+            steepest: surface.max_slope(),
+            surface,
         })
     }
 
     /// Height and slope at `water_m`, and the largest second derivative along any direction within `radius_m`, 1/m.
     pub(super) fn curved(&self, water_m: DVec2, radius_m: f64) -> (SurfacePoint, f64) {
-        let (mut height_m, mut slope) = (0.0, DVec2::ZERO);
-        let (mut xx, mut xz, mut zz) = (0.0, 0.0, 0.0);
-        for c in &self.facts.water.surface.components {
-            let (sin, cos) = sin_cos_turns(water_m.dot(c.frequency_per_m) + c.phase_turns);
-            let k = c.frequency_per_m * TAU;
-            let high_m = c.amplitude_m * sin;
-            height_m += high_m;
-            slope += k * (c.amplitude_m * cos);
-            xx -= high_m * k.x * k.x;
-            xz -= high_m * k.x * k.y;
-            zz -= high_m * k.y * k.y;
-        }
-        // The larger eigenvalue of a symmetric matrix, by magnitude.
-        let here = (0.5 * (xx + zz)).abs() + (0.5 * (xx - zz)).hypot(xz);
-        let bend_per_m = self.bend_per_m.min(here + self.twist_per_m2 * radius_m);
-        (SurfacePoint { height_m, slope }, bend_per_m)
+        let (at, curvature) = self.surface.curved_at(water_m.x, water_m.y);
+        let within_m = curvature.largest_per_m() + self.twist_per_m2 * radius_m;
+        (at, self.bend_per_m.min(within_m))
     }
 
     /// Height of `p_m` over the water.
     pub(super) fn over_water_m(&self, p_m: DVec3) -> f64 {
-        p_m.y - self.facts.water.surface.at(p_m.x, p_m.z).height_m
+        p_m.y - self.surface.at(p_m.x, p_m.z).height_m
     }
 
     /// Irradiance of the skies on a surface with unit `normal` at `p_m`, W/m²: in the air the half of the sky it faces, under
     /// water as if that were flat.
     pub(super) fn sky_w_m2(&self, p_m: DVec3, normal: DVec3, dry: bool) -> [f64; 3] {
-        let facts = &self.facts;
-        std::array::from_fn(|c| {
-            let radiance = facts.lights.sky.radiance[c];
-            if dry {
-                sky_irradiance(radiance, 1.0, 0.0, 0.0, 1.0, normal.y, 1.0)
-            } else {
-                sky_irradiance(
-                    radiance,
-                    facts.lights.sky.transmittance,
-                    facts.water.extinction_per_m[c],
-                    -p_m.y,
-                    facts.lights.sky.path_factor,
-                    normal.y,
-                    1.0 / (facts.water.ior * facts.water.ior),
-                )
-            }
-        })
+        if dry {
+            self.sky.in_air_w_m2(normal.y)
+        } else {
+            self.sky.under_water_w_m2(-p_m.y, normal.y)
+        }
     }
 
     /// First parameter t > 0 at which the ray `from_m` + t `direction` (unit), that starts on `side` (1 above, −1 below) of the
@@ -135,7 +146,7 @@ impl Place {
     pub(super) fn meet_water(&self, from_m: DVec3, direction: DVec3, side: f64) -> Option<f64> {
         /// Steps after which a ray that neither meets the water nor leaves the layer of waves is given up.
         const MOST_STEPS: u32 = 100_000;
-        let crest_m = self.facts.water.surface.max_height_m();
+        let crest_m = self.surface.max_height_m();
         let mut t = 0.0;
         let gap_m = side * from_m.y - crest_m;
         if gap_m > 0.0 {
@@ -149,7 +160,7 @@ impl Place {
         let bend = self.bend_per_m * level2;
         for _ in 0..MOST_STEPS {
             let p = from_m + direction * t;
-            let SurfacePoint { height_m, slope } = self.facts.water.surface.at(p.x, p.z);
+            let SurfacePoint { height_m, slope } = self.surface.at(p.x, p.z);
             let f = side * (p.y - height_m);
             if f <= 1e-14 * (1.0 + p.abs().max_element()) {
                 return Some(t);

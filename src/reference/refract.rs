@@ -5,20 +5,17 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::physics::turns::sin_cos_turns;
-use crate::waves::WaterSurface;
+use crate::waves::{ROW_POINTS, RowPoints, Rows, Surface};
 
 /// Rays per block.
-pub(super) const BLOCK: usize = 128;
+pub(super) const BLOCK: usize = ROW_POINTS;
 
 type Lanes = [f64; BLOCK];
 
 /// Rays of one block, by property.
 pub(super) struct Block {
-    /// Height above the water at rest where the ray enters, m.
-    pub(super) height_m: Lanes,
-    slope_x: Lanes,
-    slope_z: Lanes,
+    /// The water where the rays enter.
+    pub(super) water: RowPoints,
     /// (n·l)/n_y: water surface facing the sun per horizontal area.
     pub(super) facing: Lanes,
     /// `facing` times the reflectance.
@@ -37,9 +34,7 @@ impl Block {
     pub(super) fn new() -> Self {
         const ZERO: Lanes = [0.0; BLOCK];
         Self {
-            height_m: ZERO,
-            slope_x: ZERO,
-            slope_z: ZERO,
+            water: RowPoints::FLAT,
             facing: ZERO,
             reflected: ZERO,
             entered: ZERO,
@@ -50,20 +45,9 @@ impl Block {
     }
 }
 
-/// sin and cos of 0, 1, 2 … steps of one wave component.
-struct StepTable {
-    amplitude_m: f64,
-    /// 2π A f, the slope's amplitude.
-    gradient: DVec2,
-    frequency_per_m: DVec2,
-    phase_turns: f64,
-    sin: Lanes,
-    cos: Lanes,
-}
-
 /// The surface along rows with a fixed step, and one sun.
 pub(super) struct RowRefractor {
-    tables: Vec<StepTable>,
+    rows: Rows,
     step_m: DVec2,
     to_light: DVec3,
     ior: f64,
@@ -73,33 +57,14 @@ pub(super) struct RowRefractor {
 impl RowRefractor {
     /// For local coordinates of `surface`, rows with `step_m` between the rays and a floor `depth_m` below.
     pub(super) fn new(
-        surface: &WaterSurface,
+        surface: &Surface,
         step_m: DVec2,
         to_light: DVec3,
         ior: f64,
         depth_m: f64,
     ) -> Self {
-        let tables = surface
-            .components
-            .iter()
-            .map(|c| {
-                let step_turns = c.frequency_per_m.dot(step_m);
-                let mut table = StepTable {
-                    amplitude_m: c.amplitude_m,
-                    gradient: c.frequency_per_m * (std::f64::consts::TAU * c.amplitude_m),
-                    frequency_per_m: c.frequency_per_m,
-                    phase_turns: c.phase_turns,
-                    sin: [0.0; BLOCK],
-                    cos: [0.0; BLOCK],
-                };
-                for (i, (sin, cos)) in table.sin.iter_mut().zip(&mut table.cos).enumerate() {
-                    (*sin, *cos) = sin_cos_turns(step_turns * i as f64);
-                }
-                table
-            })
-            .collect();
         Self {
-            tables,
+            rows: surface.rows(step_m),
             step_m,
             to_light,
             ior,
@@ -109,35 +74,17 @@ impl RowRefractor {
 
     /// Sends [`BLOCK`] rays down from `start_m` on.
     pub(super) fn send(&self, start_m: DVec2, block: &mut Block) {
-        self.lift(start_m, block);
+        self.rows.evaluate(start_m, &mut block.water);
         self.refract(block);
         self.drop(start_m, block);
-    }
-
-    /// Height and slope: sin(α + iδ) from the sine and cosine of α, exact in every block, and of iδ, from the table.
-    fn lift(&self, start_m: DVec2, block: &mut Block) {
-        block.height_m.fill(0.0);
-        block.slope_x.fill(0.0);
-        block.slope_z.fill(0.0);
-        for table in &self.tables {
-            let (sin, cos) = sin_cos_turns(start_m.dot(table.frequency_per_m) + table.phase_turns);
-            let (high_s, high_c) = (table.amplitude_m * sin, table.amplitude_m * cos);
-            let (gx, gz) = (table.gradient.x, table.gradient.y);
-            for i in 0..BLOCK {
-                let (s, c) = (table.sin[i], table.cos[i]);
-                let cosine = cos * c - sin * s;
-                block.height_m[i] += high_s * c + high_c * s;
-                block.slope_x[i] += gx * cosine;
-                block.slope_z[i] += gz * cosine;
-            }
-        }
     }
 
     /// Fresnel's split, and the refracted direction as (sideways per metre of path, down per metre of path).
     fn refract(&self, block: &mut Block) {
         let Block {
-            slope_x,
-            slope_z,
+            water: RowPoints {
+                slope_x, slope_z, ..
+            },
             facing,
             reflected,
             entered,
@@ -185,7 +132,7 @@ impl RowRefractor {
     /// From direction to landing point.
     fn drop(&self, start_m: DVec2, block: &mut Block) {
         let Block {
-            height_m,
+            water: RowPoints { height_m, .. },
             x_m,
             z_m,
             path_m,

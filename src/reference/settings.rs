@@ -152,9 +152,6 @@ pub enum ReferenceError {
         /// Length of `objects`.
         objects: usize,
     },
-    /// The figures of the scene do not fit together.
-    #[error("the scene cannot be counted: {0}")]
-    Scene(String),
     /// The caller said that nobody waits any more.
     #[error("cancelled before the reference was good enough")]
     Cancelled,

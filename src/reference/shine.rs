@@ -56,7 +56,7 @@ pub(super) fn shine(
                 let path_m = lamp_m.distance(to_m);
                 let blocked = patch.blocked(place, lamp_m, to_m, may_be_shaded, stack);
                 let flux = m2 * height_m / path_m.powi(3);
-                sum.book(flux, place.facts.water.extinction_per_m, path_m, blocked);
+                sum.book(flux, place.extinction_per_m, path_m, blocked);
             }
         }
         let per_m2 = lattice.area_per_point_m2() / (2.0 * patch.half_m).powi(2);

@@ -2,12 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
-use super::light::PlacedLight;
+use super::light::{PlacedLight, Source};
 use super::place::Place;
 use super::rings::Rings;
 use super::slanted::Cells;
 use super::window::LightWindow;
-use crate::facts::source::Source;
 
 /// The places.
 #[derive(Clone, Copy, Debug)]
@@ -30,15 +29,20 @@ impl Strata {
         let middle_m = corner_m + (u_m + v_m) * 0.5;
         match light.source {
             Source::Sun { .. } => {
-                let flat = light.source.direction_at(middle_m, place.facts.water.ior)?;
+                let flat = light.source.flat_direction(middle_m, place.ior)?;
                 Some(Self::Cells(Cells::of(corner_m, u_m, v_m, flat)))
             }
-            Source::Point { position_m } => {
+            Source::Lamp {
+                position_m,
+                submerged: false,
+            } => {
                 let across = u_m.cross(v_m);
                 let square = (middle_m, across.normalize_or_zero(), across.length());
                 Some(Self::Rings(light.rings(place, position_m, square)))
             }
-            Source::Submerged { .. } => None,
+            Source::Lamp {
+                submerged: true, ..
+            } => None,
         }
     }
 

@@ -10,7 +10,7 @@ use super::refract::{BLOCK, Block, RowRefractor};
 use super::tally::{Tally, add_to, sum};
 use super::window::LightWindow;
 use crate::physics::attenuation::transmission;
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// Most bands of rows; each has its own map until they are added up in order.
 const MOST_BANDS: usize = 64;
@@ -111,7 +111,7 @@ impl<const K: usize> Ground<'_, K> {
 /// What all rays of a sun have in common, in local coordinates.
 pub(super) struct Beam<'a, const K: usize> {
     pub(super) ground: Ground<'a, K>,
-    pub(super) surface: &'a WaterSurface,
+    pub(super) surface: &'a Surface,
     pub(super) to_light: DVec3,
     pub(super) ior: f64,
     pub(super) window: LightWindow,
@@ -169,7 +169,7 @@ impl<const K: usize> Beam<'_, K> {
                 continue;
             }
             let top_m = start_m + lattice.step_m() * i as f64;
-            let from_m = DVec3::new(top_m.x, block.height_m[i], top_m.y);
+            let from_m = DVec3::new(top_m.x, block.water.height_m[i], top_m.y);
             let to_m = DVec3::new(x_m, -self.ground.map.depth_m, z_m);
             self.ground
                 .land(entered, from_m, to_m, block.path_m[i], stack, tally);

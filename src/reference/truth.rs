@@ -4,6 +4,8 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
+use super::checks::check_water;
+use super::sky::Sky;
 use super::{ReferenceError, TruthSettings, disk, map, object_map, view};
 use crate::scene::{Output, Receiver, ResolvedScene};
 
@@ -143,7 +145,8 @@ pub fn truth(
         Output::IrradianceMap(output) => match output.receiver {
             Receiver::Floor(_) => floor(resolved, settings, progress, cancelled),
             Receiver::Object(index) => {
-                object_map::object_map(resolved, index, settings, progress, cancelled)
+                let which = (index, output.layer);
+                object_map::object_map(resolved, which, settings, progress, cancelled)
             }
         },
     }?;
@@ -173,10 +176,10 @@ fn floor(
         && output.include_sky
     {
         output.include_sky = false;
-        sky_w_m2 = crate::methods::facts(resolved)
-            .map_err(|error| ReferenceError::Scene(error.to_string()))?
-            .output
-            .sky_w_m2;
+        let scene = &resolved.scene;
+        let floor = scene.floor.as_ref().ok_or(ReferenceError::NoFloor)?;
+        let sky = Sky::of(scene, check_water(&scene.water)?);
+        sky_w_m2 = sky.under_water_w_m2(floor.depth_m, 1.0);
     }
     let map::CountedMap { map, shadow } =
         map::count(&suns_only, &settings.counting(), progress, cancelled)?;

@@ -5,14 +5,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::camera::{ViewPoint, Viewer};
+use super::camera::{Picture, ViewPoint, Viewer};
+use super::light::Source;
 use super::map::{MOST_GROWTH, ORDER, half_difference, mean, share};
 use super::patch::{Landed, Patch, Search};
 use super::place::Place;
 use super::shine::shine;
 use super::tally::add_to;
 use super::{ReferenceError, Truth, TruthKind, TruthSettings};
-use crate::facts::source::Source;
 use crate::scene::{Output, ResolvedScene};
 
 /// Rays per footprint of evenly lit water in the first round, each half.
@@ -78,13 +78,14 @@ pub(super) fn view(
     let Output::View(output) = &resolved.scene.output else {
         return Err(ReferenceError::NoCamera);
     };
-    let place = Place::of(resolved)?;
+    let picture = Picture::of(resolved)?;
+    let place = Place::of(resolved, picture.middle_m())?;
     let grid = PixelGrid::of(
         output.width.max(1),
         output.height.max(1),
         settings.most_points,
     );
-    let mut viewer = Viewer::of(&place)?;
+    let mut viewer = Viewer::of(&place, &picture);
     let mut points = Vec::new();
     for pixel in grid.pixels() {
         points.push(viewer.look(pixel).map(|point| lit(&place, point)));
@@ -121,8 +122,9 @@ pub(super) fn shadows(
     resolved: &ResolvedScene,
     pixels: &[[u32; 2]],
 ) -> Result<Vec<Option<f64>>, ReferenceError> {
-    let place = Place::of(resolved)?;
-    let viewer = Viewer::of(&place)?;
+    let picture = Picture::of(resolved)?;
+    let place = Place::of(resolved, picture.middle_m())?;
+    let viewer = Viewer::of(&place, &picture);
     let points: Vec<Option<Lit>> = pixels
         .par_iter()
         .map_init(
@@ -171,7 +173,13 @@ fn lights_in_air(place: &Place, point: &ViewPoint) -> Landed {
     let mut sum = Landed::default();
     let mut stack = Vec::new();
     for light in &place.lights {
-        if matches!(light.source, Source::Submerged { .. }) {
+        if matches!(
+            light.source,
+            Source::Lamp {
+                submerged: true,
+                ..
+            }
+        ) {
             continue;
         }
         let (to_light, distance_m) = light.toward(point.position_m);
@@ -274,7 +282,11 @@ fn count_point(place: &Place, patch: &Patch, per_patch: f64, index: usize) -> Co
     let mut stack = Vec::new();
     for (nth, light) in place.lights.iter().enumerate() {
         let key = (index * place.lights.len() + nth) as u64;
-        let (halves, rays) = if let Source::Submerged { position_m } = light.source {
+        let (halves, rays) = if let Source::Lamp {
+            position_m,
+            submerged: true,
+        } = light.source
+        {
             shine(
                 place,
                 light,

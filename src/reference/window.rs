@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use glam::{DVec2, DVec3};
 
 use crate::physics::refraction::{direction_to_light, normal_from_slope, refract_direction};
-use crate::waves::WaterSurface;
+use crate::waves::Surface;
 
 /// Directions in which the rim of the slopes is looked at.
 const RIM_DIRECTIONS: u32 = 64;
@@ -56,7 +56,7 @@ pub(super) struct Target {
 ///
 /// Projects the rectangle back along the directions that the water's slopes can refract to; 2 % wider on each side.
 pub fn light_window(
-    surface: &WaterSurface,
+    surface: &Surface,
     to_light: DVec3,
     ior: f64,
     depth_m: f64,
@@ -72,7 +72,7 @@ pub fn light_window(
 
 /// The water whose light can reach any of `targets`; those wholly above the crests are left out.
 pub(super) fn window_of(
-    surface: &WaterSurface,
+    surface: &Surface,
     to_light: DVec3,
     ior: f64,
     targets: &[Target],
@@ -113,7 +113,7 @@ pub(super) struct LampDrift {
 
 impl LampDrift {
     /// Over all incidences, those from below the horizon too: the flank of a wave can face a light that is lower.
-    pub(super) fn of(surface: &WaterSurface, ior: f64) -> Self {
+    pub(super) fn of(surface: &Surface, ior: f64) -> Self {
         let mut drift = Self {
             aside: 0.0,
             farthest: 0.0,
@@ -176,7 +176,7 @@ impl LampDrift {
 }
 
 /// Metres sideways (x, z) per metre down of the refracted light, for slopes all over what the surface can have.
-fn offsets_per_depth(surface: &WaterSurface, to_light: DVec3, ior: f64) -> Vec<DVec2> {
+fn offsets_per_depth(surface: &Surface, to_light: DVec3, ior: f64) -> Vec<DVec2> {
     let rim = surface.rim_slopes(RIM_DIRECTIONS);
     let mut slopes = vec![DVec2::ZERO];
     for share in SHARES {

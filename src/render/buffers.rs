@@ -14,7 +14,7 @@ use crate::stages::estimate::{self, COMPARISONS, Comparison};
 use crate::stages::level_map::LEVEL_MAPS;
 use crate::stages::objects::{GEOMETRY, INSTANCES};
 use crate::stages::receivers::{self, ALL_RECEIVERS, RECEIVERS, Receiver};
-use crate::stages::surface::{WAVES, Wave};
+use crate::stages::surface::WAVES;
 use crate::stages::{Pass, Slot};
 
 /// Names of the buffers beside the slots'.
@@ -288,16 +288,7 @@ impl Renderer {
             }
         };
         write(&WAVES, &|| {
-            let components = facts.water.surface.components.iter();
-            let waves: Vec<Wave> = components
-                .map(|c| Wave {
-                    amplitude_m: c.amplitude_m as f32,
-                    frequency_x_per_m: c.frequency_per_m.x as f32,
-                    frequency_z_per_m: c.frequency_per_m.y as f32,
-                    phase_turns: c.phase_turns as f32,
-                })
-                .collect();
-            bytemuck::cast_slice(&waves).to_vec()
+            bytemuck::cast_slice(&facts.water.surface.gpu_elements()).to_vec()
         });
         write(&INSTANCES, &|| match self.geometry.in_use() {
             Some(geometry) => bytemuck::cast_slice(&geometry.instances(facts)).to_vec(),

@@ -7,6 +7,7 @@ mod comparison;
 mod executor;
 mod geometry;
 mod pieces;
+mod prepared;
 mod self_check;
 mod tune;
 mod warm;
@@ -37,6 +38,7 @@ use crate::stats::{
     TimeStats, Warning,
 };
 
+pub use prepared::Prepared;
 pub use self_check::{SelfCheck, SelfCheckItem, TwinError, twin_error};
 
 /// Why there is no frame.
@@ -167,8 +169,7 @@ impl Renderer {
         &self.sources
     }
 
-    /// What would run, given what is cached now. Nothing does, but for the looks by which dials are chosen where `quality` asks for
-    /// an error or a time.
+    /// Prepares a scene and plans it, as [`plan_prepared`](Self::plan_prepared) does.
     ///
     /// # Errors
     /// When the scene cannot be rendered.
@@ -177,16 +178,27 @@ impl Renderer {
         resolved: &ResolvedScene,
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError> {
-        let tuned = self.tuned(resolved, cancel)?;
-        let facts =
-            methods::facts_with_warnings(tuned.as_ref().map_or(resolved, |(scene, _)| scene))?;
-        let mut plan = plan::plan_scene(&facts, Wanted::Frame, self)?.report;
-        plan.chosen = tuned.map(|(_, chosen)| chosen);
+        self.plan_prepared(&Prepared::new(resolved.clone())?, cancel)
+    }
+
+    /// What would run, given what is cached now. Nothing does, but for the looks by which dials are chosen where `quality` asks for
+    /// an error or a time.
+    ///
+    /// # Errors
+    /// When the scene cannot be rendered.
+    pub fn plan_prepared(
+        &mut self,
+        prepared: &Prepared,
+        cancel: &CancellationToken,
+    ) -> Result<Plan, RenderError> {
+        let tuned = self.tuned(prepared, cancel)?;
+        let rendered = tuned.as_ref().map_or(prepared, |tuned| &tuned.rung);
+        let mut plan = plan::plan_scene(rendered.facts(), Wanted::Frame, self)?.report;
+        plan.chosen = tuned.map(|tuned| tuned.chosen);
         Ok(plan)
     }
 
-    /// Renders; `cancel` is looked at between submissions. Where the GPU runs out of memory the caches make way and the frame is
-    /// tried once more.
+    /// Prepares a scene and renders it, as [`render_prepared`](Self::render_prepared) does.
     ///
     /// # Errors
     /// When the scene cannot be rendered within the budget, the GPU fails, or the job is cancelled.
@@ -195,13 +207,26 @@ impl Renderer {
         resolved: &ResolvedScene,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
-        match self.render_once(resolved, cancel) {
+        self.render_prepared(&Prepared::new(resolved.clone())?, cancel)
+    }
+
+    /// Renders; `cancel` is looked at between submissions. Where the GPU runs out of memory the caches make way and the frame is
+    /// tried once more.
+    ///
+    /// # Errors
+    /// When the scene cannot be rendered within the budget, the GPU fails, or the job is cancelled.
+    pub fn render_prepared(
+        &mut self,
+        prepared: &Prepared,
+        cancel: &CancellationToken,
+    ) -> Result<Frame, RenderError> {
+        match self.render_once(prepared, cancel) {
             Err(RenderError::Gpu(GpuError::OutOfMemory(first))) => {
                 tracing::warn!(
                     error = first,
                     "the caches are emptied, and the frame is tried again"
                 );
-                match self.render_once(resolved, cancel) {
+                match self.render_once(prepared, cancel) {
                     Err(RenderError::Gpu(GpuError::OutOfMemory(again))) => {
                         Err(RenderError::Gpu(GpuError::OutOfMemory(format!(
                             "{again} (with empty caches, at the second try)"
@@ -216,20 +241,19 @@ impl Renderer {
 
     fn render_once(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
         let started = Instant::now();
         self.gpu.check()?;
-        let tuned = self.tuned(resolved, cancel)?;
-        let asked = resolved;
-        let resolved = tuned.as_ref().map_or(asked, |(scene, _)| scene);
-        let facts = methods::facts_with_warnings(resolved)?;
-        let plan = plan::plan_scene(&facts, Wanted::Frame, self)?;
-        let plan_ms = ms_since(started);
+        let tuned = self.tuned(prepared, cancel)?;
+        let rendered = tuned.as_ref().map_or(prepared, |tuned| &tuned.rung);
+        let (resolved, facts) = (rendered.resolved(), rendered.facts());
+        let plan = self.plan_in_budget(facts, Wanted::Frame)?;
+        let plan_ms = prepared.took_ms() + ms_since(started);
         let cache_before = self.level_maps.stats();
         let ran = Instant::now();
-        let run = self.run(resolved, &facts, &plan, cancel)?;
+        let run = self.run(resolved, facts, &plan, cancel)?;
         let builds_level_maps: Vec<&str> = (plan.graph.of(Scope::LevelMap).iter())
             .map(|pass| pass.name)
             .collect();
@@ -238,7 +262,7 @@ impl Renderer {
         let gpu_times = self.timing.collect(&self.gpu, ms_since(ran))?;
         let mut stats = Stats {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            scene_hash: asked.hash(),
+            scene_hash: prepared.scene_hash().to_owned(),
             adapter: self.adapter(),
             passes: plan
                 .passes
@@ -272,20 +296,21 @@ impl Renderer {
             energy: run.energy,
             planes: run.planes,
             accuracy: run.accuracy,
-            exposure: exposure(&facts, resolved),
+            exposure: exposure(facts, resolved),
             warnings: plan.warnings,
         };
         let has_looked = !stats.energy.is_empty();
         collect::join_warnings(&mut stats.warnings, run.warnings, has_looked);
-        collect::tell_flux(&mut stats.warnings, &facts, &stats.energy);
-        if let Some((_, chosen)) = tuned {
-            stats.warnings.extend(tune::unmet(asked, &chosen));
+        collect::tell_flux(&mut stats.warnings, facts, &stats.energy);
+        if let Some(tune::Tuned { chosen, .. }) = tuned {
+            let unmet = tune::unmet(prepared.resolved(), &chosen);
+            stats.warnings.extend(unmet);
             let adapter = format!("{}, {}", stats.adapter.name, stats.adapter.driver);
             let calibrated = &self.calibration.adapter;
             stats.warnings.extend(tune::foreign(calibrated, &adapter));
             stats.accuracy.get_or_insert_default().chosen = Some(chosen);
         }
-        stats.time_ms.total = ms_since(started);
+        stats.time_ms.total = prepared.took_ms() + ms_since(started);
         Ok(Frame {
             width: run.width,
             height: run.height,
@@ -308,6 +333,24 @@ impl Renderer {
         let facts = methods::facts(resolved)?;
         let plan = plan::plan_scene(&facts, Wanted::Points, self)?;
         Ok(self.run(resolved, &facts, &plan, cancel)?.points)
+    }
+
+    /// The plan of a frame. Level maps of other scenes make way where they would not fit beside it: whether a frame is rendered does not
+    /// depend on what is cached.
+    fn plan_in_budget(
+        &mut self,
+        facts: &SceneFacts,
+        wanted: Wanted,
+    ) -> Result<FramePlan, RenderError> {
+        let plan = plan::plan_scene(facts, wanted, self)?;
+        let is_over = plan.report.peak_bytes > self.memory_budget_bytes;
+        if !is_over || self.arena.is_none() || !plan::level_maps(facts).is_empty() {
+            return Ok(plan);
+        }
+        self.level_maps.clear();
+        self.arena = None;
+        self.bind_groups.clear();
+        Ok(plan::plan_scene(facts, wanted, self)?)
     }
 
     /// Runs a plan, within the budgets of memory and level maps.

@@ -2,21 +2,30 @@
 
 use tokio_util::sync::CancellationToken;
 
-use super::{RenderError, Renderer};
+use super::{Prepared, RenderError, Renderer, bindable_bytes};
 use crate::methods;
-use crate::plan::{self, Wanted, WarmCache};
+use crate::plan::{self, NothingCached, Wanted, WarmCache};
 use crate::scene::ResolvedScene;
 use crate::stats::{ChosenDials, Warning};
 use crate::tuning::choose::{self, Prospect};
 use crate::tuning::{cost, ladder};
 
+/// A scene whose dials were chosen.
+pub(super) struct Tuned {
+    /// The scene with them.
+    pub(super) rung: Prepared,
+    /// What they are, and why.
+    pub(super) chosen: ChosenDials,
+}
+
 impl Renderer {
-    /// The scene with dials chosen for what `quality` asks, and what they are; `None` where it asks for nothing.
+    /// The scene with dials chosen for what `quality` asks; `None` where it asks for nothing.
     pub(super) fn tuned(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
-    ) -> Result<Option<(ResolvedScene, ChosenDials)>, RenderError> {
+    ) -> Result<Option<Tuned>, RenderError> {
+        let resolved = prepared.resolved();
         let quality = &resolved.scene.quality;
         let chosen = if let Some(target) = quality.target_error {
             self.for_error(resolved, target, cancel)?
@@ -25,8 +34,9 @@ impl Renderer {
         } else {
             return Ok(None);
         };
-        let rung = with_cells(resolved, chosen.water_cells);
-        Ok(Some((rung, chosen)))
+        // Here and not with the request: trial renders on this device decide which scene it is whose facts and warnings count.
+        let rung = Prepared::new(with_cells(resolved, chosen.water_cells))?;
+        Ok(Some(Tuned { rung, chosen }))
     }
 
     fn for_error(
@@ -108,17 +118,34 @@ impl Renderer {
         })
     }
 
-    /// The most cells whose frame fits the memory.
+    /// Hash of all that decides, besides the scene and the adapter, which dials are chosen.
+    pub fn dial_basis(&self) -> String {
+        let calibration = &self.calibration;
+        let budgets = [
+            self.memory_budget_bytes,
+            self.level_maps.stats().budget_bytes,
+            bindable_bytes(&self.gpu),
+        ];
+        let basis = serde_json::json!({ "calibration": calibration, "budgets_bytes": budgets });
+        blake3::hash(basis.to_string().as_bytes())
+            .to_hex()
+            .to_string()
+    }
+
+    /// The most cells whose frame fits the memory of an empty GPU, whatever is cached now: the same request gets the same dials.
     fn most_cells(&self, resolved: &ResolvedScene) -> Result<u32, RenderError> {
         let (mut low, mut high) = (ladder::FEWEST_CELLS, ladder::MOST_CELLS + 1);
+        let empty = NothingCached {
+            arena_bytes: self.level_maps.stats().budget_bytes,
+        };
         while high - low > 1 {
             let middle = low + (high - low) / 2;
             let mut rung = with_cells(resolved, middle);
             rung.scene.quality.estimate_error = true;
             let facts = methods::facts(&rung)?;
             let level_maps: u64 = plan::level_maps(&facts).iter().map(|k| k.bytes()).sum();
-            let fits = level_maps <= self.level_maps.stats().budget_bytes;
-            match self.check_budget(&plan::plan_scene(&facts, Wanted::Frame, self)?) {
+            let fits = level_maps <= empty.arena_bytes;
+            match self.check_budget(&plan::plan_scene(&facts, Wanted::Frame, &empty)?) {
                 Ok(()) if fits => low = middle,
                 Ok(()) => high = middle,
                 Err(RenderError::OverBudget { .. }) => high = middle,
@@ -150,7 +177,7 @@ impl Renderer {
         let mut rung = with_cells(resolved, cells);
         rung.scene.quality.estimate_error = true;
         let facts = methods::facts(&rung)?;
-        let plan = plan::plan_scene(&facts, Wanted::Estimate, self)?;
+        let plan = self.plan_in_budget(&facts, Wanted::Estimate)?;
         let run = self.run(&rung, &facts, &plan, cancel)?;
         Ok(run.accuracy.and_then(|accuracy| accuracy.estimated_error))
     }

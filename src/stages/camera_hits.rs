@@ -79,7 +79,7 @@ pub static PASS: Pass = Pass {
     uniforms: &[("view", View::LAYOUT)],
     wanted: wanted_for_camera,
     steps: Steps::Band(|facts, band| pixel_step("camera_hits_main", facts, band)),
-    work: |facts| pixels(facts) as f64 * (1.0 + facts.water.surface.components.len() as f64),
+    work: |facts| pixels(facts) as f64 * (1.0 + facts.water.surface.gpu_element_count() as f64),
 };
 
 /// Pixels of the largest band of a view; 0 without a camera.
@@ -133,7 +133,7 @@ fn view_uniform(facts: &SceneFacts, band: BandRun) -> Vec<u8> {
         first_row: band.first_row,
         row_count: band.rows,
         orthographic: u32::from(camera.orthographic),
-        wave_count: facts.water.surface.components.len() as u32,
+        wave_count: facts.water.surface.gpu_element_count() as u32,
         instance_count: facts.receivers.objects.len() as u32,
         light_count: facts.lights.lit.len() as u32,
         air_light_count: facts.lights.in_air.len() as u32,

@@ -167,7 +167,7 @@ pub fn light_uniform(facts: &SceneFacts, set: BeamSetRun) -> Vec<u8> {
         window_min: vec2(light.grid.places.min),
         cell: vec2(light.grid.places.size() / f64::from(cells)),
         cells,
-        wave_count: facts.water.surface.components.len() as u32,
+        wave_count: facts.water.surface.gpu_element_count() as u32,
         object_count: facts.receivers.objects.len() as u32,
         has_floor: u32::from(facts.receivers.floor.is_some()),
         ior: light.band.ior as f32,

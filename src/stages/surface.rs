@@ -26,7 +26,7 @@ pub static WAVES: Slot = Slot {
     ..Slot::buffer(
         "waves",
         "amplitude m, frequency turns/m, phase turns",
-        |facts| 16 * facts.water.surface.components.len() as u64,
+        |facts| 16 * facts.water.surface.gpu_element_count() as u64,
     )
 };
 
@@ -52,7 +52,7 @@ pub static PASS: Pass = Pass {
         }
         grid_step("surface_main", facts, set)
     }),
-    work: |facts| cells(facts) * (1.0 + facts.water.surface.components.len() as f64),
+    work: |facts| cells(facts) * (1.0 + facts.water.surface.gpu_element_count() as f64),
 };
 
 /// Vertices of the water grid.
@@ -73,7 +73,6 @@ pub fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
     if facts.lights.lit.is_empty() {
         return Err("no sun above the horizon and no point light shines into the water".to_owned());
     }
-    let waves = facts.water.surface.components.len();
     let sets = &facts.lights.beam_sets;
     let count = |wanted: fn(&Source) -> bool, name: &str, names: &str| {
         let first_sets = (0..sets.len()).filter(|&set| facts.lights.is_first_of_light(set));
@@ -111,11 +110,7 @@ pub fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
         } else {
             "shine"
         },
-        if facts.water.surface.max_slope() == 0.0 {
-            "flat water".to_owned()
-        } else {
-            format!("water with {waves} wave components")
-        },
+        facts.water.surface.description(),
     );
     Ok(match under {
         Some(under) => format!("{into}; {under}"),

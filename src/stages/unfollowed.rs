@@ -81,7 +81,7 @@ pub static PASS: Pass = Pass {
     work: |facts| {
         let ways = facts.unfollowed_ways();
         let steps = if ways.again || ways.bared { 32.0 } else { 0.0 };
-        let waves = facts.water.surface.components.len() as f64;
+        let waves = facts.water.surface.gpu_element_count() as f64;
         cells(facts) * (2.0 + steps * (1.0 + waves))
     },
 };

@@ -36,6 +36,7 @@ mod physics;
 mod plans;
 #[path = "../../examples/mutants/plants.rs"]
 mod plants;
+mod prepared;
 mod project;
 mod reference;
 mod reference_closed_form;
@@ -43,6 +44,8 @@ mod reference_errors;
 mod reference_lamps;
 mod reference_lens;
 mod reference_meshes;
+mod reference_texels;
+mod rooms;
 mod scene_facts;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
@@ -63,5 +66,7 @@ mod teapot;
 mod tone;
 mod truth;
 mod truth_disk;
+#[path = "../support/truths.rs"]
+mod truths;
 mod tuning;
 mod waves;

@@ -6,10 +6,11 @@ use caustica::physics::refraction::{direction_to_light, refract_direction};
 use caustica::reference::closed_form::flat_water_irradiance;
 use caustica::reference::{ReferenceMap, ReferenceSettings, irradiance_map, light_window};
 use caustica::scene::{Light, Output, ResolvedScene, Scene, Sun, Wave};
-use caustica::waves::{WaterSurface, normal};
+use caustica::waves::{Surface, normal};
 use glam::DVec2;
 
 use crate::reference_closed_form::single_sine;
+use crate::truths;
 
 pub(crate) const SINE_POOL: &str = include_str!("../../scenes/sine_pool.json");
 pub(crate) const FLAT: &str = include_str!("../../scenes/flat.json");
@@ -40,12 +41,15 @@ pub(crate) fn set_map(scene: &mut Scene, half_m: f64, width: u32, height: u32) {
 
 /// All rays at once, no target.
 pub(crate) fn count(resolved: &ResolvedScene, rays: u64) -> ReferenceMap {
-    let settings = ReferenceSettings {
+    truths::floor_map(resolved, &by_rays(rays))
+}
+
+fn by_rays(rays: u64) -> ReferenceSettings {
+    ReferenceSettings {
         target_error: None,
         max_rays: rays,
         initial_rays: 1,
-    };
-    irradiance_map(resolved, &settings, &|_| ()).unwrap()
+    }
 }
 
 fn l1(a: &ReferenceMap, b: &ReferenceMap) -> f64 {
@@ -71,7 +75,7 @@ pub(crate) fn assert_energy_closes(map: &ReferenceMap) {
 
 /// The plainest count there is: random rays, one by one, with the functions of `physics`.
 fn plain_count(scene: &Scene, half_m: f64, texels: usize, rays: u32) -> Vec<f64> {
-    let surface = WaterSurface::of(scene);
+    let surface = Surface::of(scene);
     let Light::Sun(sun) = &scene.lights[0] else {
         panic!("a sun");
     };
@@ -172,7 +176,7 @@ fn the_bits_do_not_depend_on_run_or_threads() {
             .num_threads(threads)
             .build()
             .unwrap()
-            .install(|| count(&pool, 2_000_000))
+            .install(|| irradiance_map(&pool, &by_rays(2_000_000), &|_| ()).unwrap())
     };
     let first = with_threads(1);
     for threads in [1, 2, 5] {
@@ -279,7 +283,7 @@ fn a_map_far_away_is_as_good_as_one_at_the_origin() {
 
 #[test]
 fn the_window_holds_all_light_that_matters() {
-    let surface = WaterSurface::of(&resolved(SINE_POOL).scene);
+    let surface = Surface::of(&resolved(SINE_POOL).scene);
     for (elevation_deg, azimuth_deg) in [(90.0, 0.0), (60.0, 180.0), (25.0, 70.0), (4.0, -130.0)] {
         let l = direction_to_light(f64::to_radians(elevation_deg), f64::to_radians(azimuth_deg));
         let window = light_window(&surface, l, 1.333, 2.0, DVec2::NEG_ONE, DVec2::ONE);

@@ -1,8 +1,9 @@
-//! The water surface: slope, shift, time and bounds.
+//! The water surface: slope, curvature, rows, shift, time, bounds, and what the GPU gets.
 
 use caustica::physics::dispersion::angular_frequency;
-use caustica::scene::Scene;
-use caustica::waves::{WaterSurface, normal};
+use caustica::scene::{Scene, SineWave, Wave};
+use caustica::stages::surface::Wave as GpuWave;
+use caustica::waves::{ROW_POINTS, RowPoints, Surface, SurfacePoint, normal};
 use glam::DVec2;
 
 fn scene(time_s: f64, period: &str) -> Scene {
@@ -32,7 +33,7 @@ fn points() -> impl Iterator<Item = DVec2> {
 
 #[test]
 fn slope_is_the_derivative_of_height() {
-    let surface = WaterSurface::of(&scene(3.7, ""));
+    let surface = Surface::of(&scene(3.7, ""));
     let h = 1e-5;
     for p in points() {
         let point = surface.at(p.x, p.y);
@@ -51,7 +52,7 @@ fn slope_is_the_derivative_of_height() {
 
 #[test]
 fn the_normal_is_across_both_tangents() {
-    let surface = WaterSurface::of(&scene(0.0, ""));
+    let surface = Surface::of(&scene(0.0, ""));
     for p in points() {
         let point = surface.at(p.x, p.y);
         let n = normal(point);
@@ -63,7 +64,7 @@ fn the_normal_is_across_both_tangents() {
 
 #[test]
 fn a_recentred_surface_is_the_shifted_one() {
-    let surface = WaterSurface::of(&scene(1.3, ""));
+    let surface = Surface::of(&scene(1.3, ""));
     for origin in [
         DVec2::new(0.3, -7.1),
         DVec2::new(-1234.5, 4321.25),
@@ -90,10 +91,10 @@ fn a_recentred_surface_is_the_shifted_one() {
 fn whole_periods_change_nothing_even_after_a_million_seconds() {
     let period = r#", "period_s": 2.5"#;
     let (start, late) = (
-        WaterSurface::of(&scene(0.0, period)),
-        WaterSurface::of(&scene(1e6, period)),
+        Surface::of(&scene(0.0, period)),
+        Surface::of(&scene(1e6, period)),
     );
-    let half = WaterSurface::of(&scene(1e6 + 1.25, period));
+    let half = Surface::of(&scene(1e6 + 1.25, period));
     for p in points() {
         let (a, b, c) = (start.at(p.x, p.y), late.at(p.x, p.y), half.at(p.x, p.y));
         assert!((a.height_m - b.height_m).abs() < 1e-10, "{p}");
@@ -114,21 +115,33 @@ fn waves_run_where_they_point() {
         ))
         .unwrap()
     };
-    let (start, later) = (WaterSurface::of(&scene(0.0)), WaterSurface::of(&scene(2.0)));
+    let (start, later) = (Surface::of(&scene(0.0)), Surface::of(&scene(2.0)));
     for p in points() {
         let moved = later.at(p.x, p.y + 1.0).height_m;
         assert!((start.at(p.x, p.y).height_m - moved).abs() < 1e-13);
     }
 }
 
+/// Phase, in turns, of a surface that is a single sine of this amplitude, wavelength and direction.
+fn phase_turns(surface: &Surface, wave: &SineWave) -> f64 {
+    let SurfacePoint { height_m, slope } = surface.at(0.0, 0.0);
+    let along = slope.dot(DVec2::from_angle(wave.direction_deg.to_radians()));
+    let quarter_later = along * wave.wavelength_m / std::f64::consts::TAU;
+    height_m.atan2(quarter_later) / std::f64::consts::TAU
+}
+
 #[test]
 fn the_period_follows_from_the_depth() {
-    let surface = WaterSurface::of(&scene(0.4, ""));
-    let still = WaterSurface::of(&scene(0.0, ""));
-    for (late, first) in surface.components.iter().zip(&still.components) {
-        let k = std::f64::consts::TAU * late.frequency_per_m.length();
+    let (late, still) = (scene(0.4, ""), scene(0.0, ""));
+    for Wave::Sine(wave) in &late.water.waves {
+        let alone = |scene: &Scene| {
+            let mut scene = scene.clone();
+            scene.water.waves = vec![Wave::Sine(wave.clone())];
+            phase_turns(&Surface::of(&scene), wave)
+        };
+        let k = std::f64::consts::TAU / wave.wavelength_m;
         let turns = angular_frequency(k, 2.0) * 0.4 / std::f64::consts::TAU;
-        let difference = first.phase_turns - late.phase_turns - turns;
+        let difference = alone(&still) - alone(&late) - turns;
         assert!(
             (difference - difference.round()).abs() < 1e-12,
             "{difference}"
@@ -137,8 +150,99 @@ fn the_period_follows_from_the_depth() {
 }
 
 #[test]
+fn rows_and_curved_points_are_those_of_single_points() {
+    let surface = Surface::of(&scene(5.1, ""));
+    let near = |a: SurfacePoint, b: SurfacePoint| {
+        (a.height_m - b.height_m).abs() < 1e-14 && (a.slope - b.slope).length() < 1e-13
+    };
+    for (p, step_m) in points().zip(points().map(|p| p * 0.003)) {
+        let mut row = RowPoints::FLAT;
+        surface.rows(step_m).evaluate(p, &mut row);
+        for i in 0..ROW_POINTS {
+            let at = p + step_m * i as f64;
+            let got = SurfacePoint {
+                height_m: row.height_m[i],
+                slope: DVec2::new(row.slope_x[i], row.slope_z[i]),
+            };
+            assert!(near(got, surface.at(at.x, at.y)), "{p} {step_m} {i}");
+        }
+        let (curved, _) = surface.curved_at(p.x, p.y);
+        assert!(near(curved, surface.at(p.x, p.y)), "{p}");
+    }
+}
+
+#[test]
+fn curvature_is_the_derivative_of_slope_and_keeps_to_its_bounds() {
+    let surface = Surface::of(&scene(2.2, ""));
+    let h = 1e-5;
+    let (mut most_bend, mut most_twist) = (0.0f64, 0.0f64);
+    for p in points() {
+        let slope = |d: DVec2| surface.at(p.x + d.x, p.y + d.y).slope;
+        let along_x = (slope(DVec2::X * h) - slope(DVec2::NEG_X * h)) / (2.0 * h);
+        let along_z = (slope(DVec2::Y * h) - slope(DVec2::NEG_Y * h)) / (2.0 * h);
+        let (_, curvature) = surface.curved_at(p.x, p.y);
+        for (got, numeric) in [
+            (curvature.xx_per_m, along_x.x),
+            (curvature.xz_per_m, along_x.y),
+            (curvature.xz_per_m, along_z.x),
+            (curvature.zz_per_m, along_z.y),
+        ] {
+            assert!((got - numeric).abs() < 1e-7, "{p}: {got} {numeric}");
+        }
+        let bend = curvature.largest_per_m();
+        assert!(bend <= surface.max_second_derivative_per_m());
+        most_bend = most_bend.max(bend);
+        for i in 0..16 {
+            let u = DVec2::from_angle(std::f64::consts::PI * f64::from(i) / 16.0);
+            let along = |at: DVec2| {
+                let (_, c) = surface.curved_at(at.x, at.y);
+                c.xx_per_m * u.x * u.x + 2.0 * c.xz_per_m * u.x * u.y + c.zz_per_m * u.y * u.y
+            };
+            assert!(along(p).abs() <= bend + 1e-12, "{p} {u}");
+            let twist = (along(p + u * h) - along(p - u * h)).abs() / (2.0 * h);
+            assert!(twist <= surface.max_third_derivative_per_m2() + 1e-6);
+            most_twist = most_twist.max(twist);
+        }
+    }
+    // The bounds must not be idle.
+    assert!(most_bend > 0.5 * surface.max_second_derivative_per_m());
+    assert!(most_twist > 0.5 * surface.max_third_derivative_per_m2());
+}
+
+#[test]
+fn the_gpu_gets_the_waves_of_its_shaders() {
+    let scene = scene(0.0, r#", "period_s": 2.5"#);
+    let surface = Surface::of(&scene);
+    let elements = surface.gpu_elements();
+    assert_eq!(elements.len(), scene.water.waves.len());
+    assert_eq!(elements.len(), surface.gpu_element_count());
+    // The struct is compared with the shaders' own in another test.
+    let waves: &[GpuWave] = bytemuck::cast_slice(&elements);
+    for (gpu, Wave::Sine(wave)) in waves.iter().zip(&scene.water.waves) {
+        let per_m = DVec2::from_angle(wave.direction_deg.to_radians()) / wave.wavelength_m;
+        let turns = wave.phase_deg / 360.0;
+        for (got, expected) in [
+            (gpu.amplitude_m, wave.amplitude_m),
+            (gpu.frequency_x_per_m, per_m.x),
+            (gpu.frequency_z_per_m, per_m.y),
+            (gpu.phase_turns, turns - turns.round()),
+        ] {
+            assert!((f64::from(got) - expected).abs() < 1e-6, "{gpu:?}");
+        }
+    }
+}
+
+#[test]
+fn water_is_described_by_its_kind() {
+    let flat = Surface::of(&serde_json::from_str("{}").unwrap());
+    assert_eq!(flat.description(), "flat water");
+    let waves = Surface::of(&scene(0.0, ""));
+    assert_eq!(waves.description(), "water with 3 wave components");
+}
+
+#[test]
 fn bounds_hold() {
-    let surface = WaterSurface::of(&scene(0.9, ""));
+    let surface = Surface::of(&scene(0.9, ""));
     let rim = surface.rim_slopes(64);
     assert_eq!(rim.len(), 64);
     let mut highest = 0.0f64;
@@ -161,7 +265,7 @@ fn bounds_hold() {
 
 #[test]
 fn flat_water_has_no_rim() {
-    let surface = WaterSurface::of(&serde_json::from_str("{}").unwrap());
+    let surface = Surface::of(&serde_json::from_str("{}").unwrap());
     assert!(surface.rim_slopes(64).is_empty());
     assert_eq!(surface.max_height_m(), 0.0);
     assert_eq!(surface.max_slope(), 0.0);

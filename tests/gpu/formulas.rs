@@ -1,5 +1,6 @@
 //! Every formula in f32 on this adapter against its f64 original; a broken one is found out, and the service refuses to work.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use axum::body::{Body, to_bytes};
@@ -47,7 +48,7 @@ fn this_machine_passes_its_self_check() {
 }
 
 /// Ways to break each formula slightly: file, text, replacement.
-const BROKEN: [(&str, &str, &str); 9] = [
+const BROKEN: [(&str, &str, &str); 10] = [
     (
         "lib/fresnel.wgsl",
         "return 0.5 * (r_s * r_s + r_p * r_p);",
@@ -80,6 +81,11 @@ const BROKEN: [(&str, &str, &str); 9] = [
         "return 1.01 * normal_y; }",
     ),
     ("lib/solid_angle.wgsl", "+ 1.99777106478e-1)", "+ 1.998e-1)"),
+    (
+        "lib/slicing.wgsl",
+        "(index / (planes - 1.0))",
+        "(index / (planes - 0.999))",
+    ),
     ("lib/octahedral.wgsl", "abs(v) - 1.0;", "abs(v) - 1.0001;"),
 ];
 
@@ -92,6 +98,10 @@ fn broken(index: usize) -> ShaderSources {
 
 #[test]
 fn every_broken_formula_is_found() {
+    // Every file of formulas is broken once at least.
+    let files: BTreeSet<&str> = registry::all().map(|twin| twin.file).collect();
+    let broken_files: BTreeSet<&str> = BROKEN.iter().map(|(file, ..)| *file).collect();
+    assert_eq!(broken_files, files);
     let renderer = renderer();
     for (index, (file, _, to)) in BROKEN.iter().enumerate() {
         let sources = broken(index);

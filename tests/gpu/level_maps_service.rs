@@ -13,8 +13,7 @@ use caustica::gpu_queue::RenderBackend;
 use caustica::http::app;
 use caustica::mesh::Mesh;
 use caustica::plan::Plan;
-use caustica::render::{RenderError, Renderer, SelfCheck};
-use caustica::scene::ResolvedScene;
+use caustica::render::{Prepared, RenderError, Renderer, SelfCheck};
 use caustica::stats::{AdapterStats, CacheStats};
 use serde_json::{Value, json};
 use tokio_util::sync::CancellationToken;
@@ -203,21 +202,25 @@ impl RenderBackend for Breakable {
         self.renderer.adapter()
     }
 
+    fn dial_basis(&self) -> String {
+        self.renderer.dial_basis()
+    }
+
     fn plan(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError> {
-        self.renderer.plan(resolved, cancel)
+        self.renderer.plan_prepared(prepared, cancel)
     }
 
     fn render(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
         self.maybe_lose();
-        self.renderer.render(resolved, cancel)
+        self.renderer.render_prepared(prepared, cancel)
     }
 
     fn warm(

@@ -226,6 +226,22 @@ async fn answered(error: RenderError, kind: ProblemKind) -> caustica::http::Prob
 }
 
 #[tokio::test]
+async fn what_facts_refuse_never_reaches_the_gpu_thread() {
+    let service = Service::start().await;
+    let mut scene = scenes::small();
+    scene["quality"] = json!({ "method": "planes", "target_error": 0.01 });
+    for path in ["/v1/render", "/v1/plan"] {
+        let reply = service.post_json(path, &scene).await;
+        let problem = reply.problem(ProblemKind::InvalidScene);
+        assert_eq!(problem.errors[0].pointer, "/quality/method");
+    }
+    assert_eq!(service.control.count("render"), 0);
+    assert_eq!(service.control.count("plan"), 0);
+    service.until_depth(0).await;
+    service.assert_whole().await;
+}
+
+#[tokio::test]
 async fn over_budget_names_both_figures() {
     let error = RenderError::OverBudget {
         what: "the frame at its peak".to_owned(),

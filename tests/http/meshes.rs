@@ -1,9 +1,14 @@
 //! Meshes are stored, listed, found and forgotten.
 
+use std::time::{Duration, Instant};
+
 use axum::http::Method;
 use caustica::config::Limits;
+use caustica::gpu_queue::QueueSettings;
 use caustica::http::ProblemKind;
 use caustica::mesh::MeshInfo;
+use caustica::render::Prepared;
+use caustica::scene::{Scene, resolve};
 use serde_json::Value;
 
 use super::support::scenes::OBJ;
@@ -155,6 +160,40 @@ async fn what_a_waiting_render_builds_for_a_deleted_mesh_goes_too() {
         last(&diary, &forgotten) < renders[renders.len() - 2],
         "{diary:?}"
     );
+}
+
+#[tokio::test]
+async fn a_mesh_that_is_deleted_while_its_scene_is_prepared_goes_after_the_render() {
+    let service = Service::start_queued(QueueSettings {
+        waiting: 4,
+        deadline: Duration::from_secs(60),
+    })
+    .await;
+    let queue = service.state.queue();
+    let place = queue.place(Instant::now()).unwrap();
+    queue.forget_mesh("the mesh");
+    // Others come and go meanwhile.
+    service.assert_whole().await;
+    service.assert_whole().await;
+    service.until_depth(1).await;
+    let scene = Scene::from_value(scenes::small()).unwrap();
+    let resolved = resolve(scene, &Limits::default(), |_| None).unwrap();
+    let prepared = Prepared::new(resolved).unwrap();
+    queue.render(place, prepared).await.unwrap();
+    service.assert_whole().await;
+    let diary = service.control.diary();
+    let renders: Vec<usize> = (0..diary.len()).filter(|&i| diary[i] == "render").collect();
+    let (of_place, next) = (renders[renders.len() - 2], renders[renders.len() - 1]);
+    let between = &diary[of_place..next];
+    assert!(
+        between.iter().any(|event| event == "forget the mesh"),
+        "{diary:?}"
+    );
+    // After that nobody is left who could build anything for it.
+    let before = service.control.count("forget the mesh");
+    service.assert_whole().await;
+    let after = service.control.count("forget the mesh");
+    assert_eq!(before, after, "{:?}", service.control.diary());
 }
 
 #[tokio::test]

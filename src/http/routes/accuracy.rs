@@ -33,7 +33,7 @@ use crate::lab::study::study::{Study, StudyImages};
 use crate::lab::study::sweep::{self, Refusal, StudyError, SweepSettings, run_study};
 use crate::methods;
 use crate::reference::{ReferenceError, TruthSettings, truth};
-use crate::render::RenderError;
+use crate::render::{Prepared, RenderError};
 use crate::scene::parse::{from_value, read_json};
 use crate::scene::{Issue, ResolvedScene, Scene, SceneError};
 
@@ -281,7 +281,8 @@ fn refused(error: StudyError<JobError>) -> ApiError {
     }
 }
 
-/// Renders in between other requests: where the queue is full, the study waits its turn.
+/// Renders in between other requests: where the queue is full, the study waits its turn. The thread is the study's own, so that the
+/// scene is prepared on it.
 async fn one_frame(
     state: &AppState,
     scene: ResolvedScene,
@@ -289,13 +290,14 @@ async fn one_frame(
     arrival: Instant,
 ) -> Result<Frame, JobError> {
     let turn = async {
-        loop {
-            let answer = state.queue().render(scene.clone(), arrival).await;
-            if !matches!(answer, Err(JobError::QueueFull { .. })) {
-                return answer;
+        let place = loop {
+            match state.queue().place(arrival) {
+                Err(JobError::QueueFull { .. }) => tokio::time::sleep(FULL_QUEUE_PAUSE).await,
+                place => break place?,
             }
-            tokio::time::sleep(FULL_QUEUE_PAUSE).await;
-        }
+        };
+        let prepared = Prepared::new(scene).map_err(RenderError::from)?;
+        state.queue().render(place, prepared).await
     };
     let answer = cancel.run_until_cancelled(turn).await;
     answer.unwrap_or(Err(JobError::Cancelled))

@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::{Extension, Json};
 
 use super::super::error::ApiError;
-use super::super::extract::SceneBody;
+use super::super::extract::{SceneBody, prepare};
 use super::super::observe::Arrival;
 use super::super::problem::PlanProblems;
 use super::super::state::AppState;
@@ -26,5 +26,7 @@ pub async fn plan(
     Extension(Arrival(arrival)): Extension<Arrival>,
     SceneBody(resolved): SceneBody,
 ) -> Result<Json<Plan>, ApiError> {
-    Ok(Json(state.queue().plan(resolved, arrival).await?))
+    let place = state.queue().place(arrival)?;
+    let prepared = prepare(resolved).await?;
+    Ok(Json(state.queue().plan(place, prepared).await?))
 }

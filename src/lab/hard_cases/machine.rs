@@ -18,7 +18,7 @@ use crate::frame::Frame;
 use crate::gpu::GpuError;
 use crate::gpu_queue::{GpuQueue, GpuState, GpuStatus, QueueSettings, RenderBackend};
 use crate::methods;
-use crate::render::{RenderError, Renderer};
+use crate::render::{Prepared, RenderError, Renderer};
 use crate::scene::ResolvedScene;
 
 const SAME: &str = "values that differ from those of the undisturbed frame";
@@ -253,8 +253,11 @@ fn lose_and_recover(
         .enable_time()
         .build()
         .map_err(|e| failed(e.to_string()))?;
+    let prepared = Prepared::new(scene.clone()).map_err(RenderError::from)?;
     let render = || {
-        let frame = runtime.block_on(queue.render(scene.clone(), Instant::now()));
+        let frame = queue
+            .place(Instant::now())
+            .and_then(|place| runtime.block_on(queue.render(place, prepared.clone())));
         frame.map_err(|error| failed(format!("no frame from the queue: {error}")))
     };
     let before = render()?;

@@ -11,8 +11,7 @@ use crate::gpu::GpuError;
 use crate::gpu_queue::RenderBackend;
 use crate::mesh::Mesh;
 use crate::plan::Plan;
-use crate::render::{RenderError, Renderer, SelfCheck};
-use crate::scene::ResolvedScene;
+use crate::render::{Prepared, RenderError, Renderer, SelfCheck};
 use crate::stats::{AdapterStats, CacheStats};
 
 /// Calls `harm` when the GPU has done that many of the coming submissions.
@@ -91,17 +90,21 @@ impl RenderBackend for Saboteur {
         self.renderer.adapter()
     }
 
+    fn dial_basis(&self) -> String {
+        self.renderer.dial_basis()
+    }
+
     fn plan(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError> {
-        self.renderer.plan(resolved, cancel)
+        self.renderer.plan_prepared(prepared, cancel)
     }
 
     fn render(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
         if self.armed.swap(false, Ordering::Relaxed) {
@@ -109,7 +112,7 @@ impl RenderBackend for Saboteur {
             let device = gpu.device.clone();
             after_submissions(&gpu.queue, 3, move || device.destroy());
         }
-        self.renderer.render(resolved, cancel)
+        self.renderer.render_prepared(prepared, cancel)
     }
 
     fn warm(

@@ -10,7 +10,7 @@ use caustica::gpu::GpuError;
 use caustica::gpu_queue::RenderBackend;
 use caustica::mesh::Mesh;
 use caustica::plan::{Plan, PlannedPass};
-use caustica::render::{RenderError, SelfCheck, SelfCheckItem};
+use caustica::render::{Prepared, RenderError, SelfCheck, SelfCheckItem};
 use caustica::scene::{LayerName, Output, ResolvedScene};
 use caustica::stats::{AdapterStats, CacheStats, PassStats, Stats};
 use tokio_util::sync::CancellationToken;
@@ -43,6 +43,7 @@ struct Inner {
     builds: VecDeque<GpuError>,
     idle_errors: VecDeque<GpuError>,
     failing_check: Option<String>,
+    dial_basis: String,
     gate_open: bool,
     builds_held: bool,
     diary: Vec<String>,
@@ -69,6 +70,11 @@ impl Control {
     /// Lets the self-check fail by this name.
     pub(crate) fn fail_self_check(&self, name: &str) {
         self.inner.lock().unwrap().failing_check = Some(name.to_owned());
+    }
+
+    /// Sets what dials are chosen by, for the coming builds.
+    pub(crate) fn choose_dials_by(&self, basis: &str) {
+        self.inner.lock().unwrap().dial_basis = basis.to_owned();
     }
 
     /// Holds builds up until `release_builds`.
@@ -192,16 +198,20 @@ impl RenderBackend for Fake {
         adapter()
     }
 
+    fn dial_basis(&self) -> String {
+        self.control.inner.lock().unwrap().dial_basis.clone()
+    }
+
     fn plan(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         _cancel: &CancellationToken,
     ) -> Result<Plan, RenderError> {
         self.control.note("plan");
         Ok(Plan {
             passes: vec![PlannedPass {
                 name: "surface".to_owned(),
-                reason: format!("{} waves", resolved.scene.water.waves.len()),
+                reason: format!("{} waves", prepared.resolved().scene.water.waves.len()),
                 runs: 1,
             }],
             peak_bytes: 4096,
@@ -211,11 +221,11 @@ impl RenderBackend for Fake {
 
     fn render(
         &mut self,
-        resolved: &ResolvedScene,
+        prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError> {
         let is_nan = self.act("render", cancel)?;
-        let mut frame = draw(resolved);
+        let mut frame = draw(prepared.resolved());
         if is_nan {
             for layer in frame.layers.values_mut() {
                 layer.data.fill(f32::NAN);

@@ -1,0 +1,55 @@
+//! A place in the queue, from before a scene is prepared until its job has ended.
+
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+use tokio::sync::OwnedSemaphorePermit;
+
+use super::queue::lock;
+
+/// A place in the queue. Whoever is to be refused does not get one, and is so before any work is done for it.
+#[derive(Debug)]
+pub struct Place {
+    pub(super) arrival: Instant,
+    /// When it was taken.
+    since: Instant,
+    held: Held,
+    /// Given back with the place.
+    _permit: OwnedSemaphorePermit,
+}
+
+impl Place {
+    pub(super) fn new(arrival: Instant, held: Held, permit: OwnedSemaphorePermit) -> Self {
+        let mut all = lock(&held.0);
+        let since = Instant::now();
+        all.push(since);
+        drop(all);
+        Self {
+            arrival,
+            since,
+            held,
+            _permit: permit,
+        }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let mut all = lock(&self.held.0);
+        // Those taken at the same instant are alike.
+        if let Some(index) = all.iter().position(|since| *since == self.since) {
+            all.swap_remove(index);
+        }
+    }
+}
+
+/// When each place that is held now was taken.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Held(Arc<Mutex<Vec<Instant>>>);
+
+impl Held {
+    /// Whether somebody may have looked up meshes before `moment` and still has a job to run.
+    pub(super) fn since_before(&self, moment: Instant) -> bool {
+        lock(&self.0).iter().any(|since| *since <= moment)
+    }
+}

@@ -1,0 +1,53 @@
+//! The surface along rows of evenly spaced points, a block at a time: plain arrays, so that the compiler uses vector instructions.
+
+use glam::DVec2;
+
+use super::sines::SineRows;
+
+/// Points of a block.
+pub const ROW_POINTS: usize = 128;
+
+/// One value per point of a block.
+pub(super) type Lanes = [f64; ROW_POINTS];
+
+/// Height and slope at the points of a block.
+#[derive(Clone, Debug)]
+pub struct RowPoints {
+    /// y − level, m.
+    pub height_m: [f64; ROW_POINTS],
+    /// ∂h/∂x.
+    pub slope_x: [f64; ROW_POINTS],
+    /// ∂h/∂z.
+    pub slope_z: [f64; ROW_POINTS],
+}
+
+impl RowPoints {
+    /// Flat water.
+    pub const FLAT: Self = Self {
+        height_m: [0.0; ROW_POINTS],
+        slope_x: [0.0; ROW_POINTS],
+        slope_z: [0.0; ROW_POINTS],
+    };
+}
+
+/// A surface along rows with a fixed step; made by [`super::Surface::rows`].
+#[derive(Clone, Debug)]
+pub struct Rows {
+    pub(super) kind: RowKind,
+}
+
+/// What the rows run over.
+#[derive(Clone, Debug)]
+pub(super) enum RowKind {
+    /// A sum of sines.
+    Sines(SineRows),
+}
+
+impl Rows {
+    /// Height and slope at [`ROW_POINTS`] points from `start_m`, (x, z), on.
+    pub fn evaluate(&self, start_m: DVec2, points: &mut RowPoints) {
+        match &self.kind {
+            RowKind::Sines(rows) => rows.evaluate(start_m, points),
+        }
+    }
+}
