@@ -411,7 +411,9 @@ fn row_of_boxes(detail: f64) -> Value {
 #[test]
 fn maps_go_by_the_size_on_the_picture() {
     let sizes = |detail: f64| -> Vec<u32> {
-        let facts = methods::facts(&scene_files::scene(row_of_boxes(detail))).unwrap();
+        let mut scene = row_of_boxes(detail);
+        scene["quality"]["method"] = json!("planes");
+        let facts = methods::facts(&scene_files::scene(scene)).unwrap();
         let sizes: Vec<u32> = facts
             .receivers
             .objects

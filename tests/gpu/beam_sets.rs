@@ -106,6 +106,9 @@ fn bands_see_water_of_their_own() {
                 assert_eq!(*both, [red[0], others[1], others[2]]);
             }
         }
-        assert!(both.iter().any(|texel| texel.iter().all(|&v| v > 0.0)), "{output}");
+        assert!(
+            both.iter().any(|texel| texel.iter().all(|&v| v > 0.0)),
+            "{output}"
+        );
     }
 }
