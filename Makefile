@@ -33,6 +33,7 @@ nightly: deps
 
 # Check formatting, and let no warning pass.
 lint: deps
+	@./deploy/install-deps.sh --lint
 	$(CARGO) fmt --check
 	$(CARGO) clippy --release --locked --all-targets -- -D warnings
 

@@ -5,21 +5,23 @@
 #   deploy/install-deps.sh --build       what compiling needs: a C and C++ compiler and linker, make
 #   deploy/install-deps.sh --run         what running needs: the Vulkan loader and a driver (a software one if there is none)
 #   deploy/install-deps.sh --container   --run, and what a GPU driver mounted into a container links against
+#   deploy/install-deps.sh --lint        what `make lint` needs: rustfmt and clippy, which a minimal Rust toolchain lacks
 #
 # Options add up; without any it is --build --run. Nothing is installed, and no root is needed, when everything is there.
 set -eu
 
 usage() {
-    sed -n '2,9s/^# \{0,1\}//p' "$0"
+    sed -n '2,10s/^# \{0,1\}//p' "$0"
 }
 
-build=no run=no container=no
+build=no run=no container=no lint=no
 [ $# -gt 0 ] || { build=yes run=yes; }
 for option in "$@"; do
     case $option in
         --build) build=yes ;;
         --run) run=yes ;;
         --container) run=yes container=yes ;;
+        --lint) lint=yes ;;
         -h | --help) usage && exit 0 ;;
         *) echo "install-deps: unknown option $option" >&2 && usage >&2 && exit 2 ;;
     esac
@@ -111,4 +113,18 @@ fi
 if [ $build = yes ] && ! has_command cargo; then
     echo "install-deps: cargo is missing; please install Rust from https://rustup.rs" >&2
     exit 1
+fi
+
+# 4. rustfmt and clippy are components of the toolchain.
+has_lint_tools() { cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1; }
+
+if [ $lint = yes ] && ! has_lint_tools; then
+    if has_command rustup; then
+        echo "install-deps: adding rustfmt and clippy to the Rust toolchain" >&2
+        rustup component add rustfmt clippy >&2
+    fi
+    if ! has_lint_tools; then
+        echo "install-deps: \`cargo fmt\` or \`cargo clippy\` is missing; please install rustfmt and clippy for this toolchain" >&2
+        exit 1
+    fi
 fi

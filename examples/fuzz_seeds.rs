@@ -1,4 +1,4 @@
-//! Writes what fuzzing begins with: the project's scenes, the scenes of the hard cases, and meshes; `make fuzz` runs it.
+//! Writes what fuzzing begins with: the project's scenes, the scenes of the hard cases, one for each method, and meshes; `make fuzz` runs it.
 //!
 //! Usage: `fuzz_seeds FOLDER`; files go to `FOLDER/scene` and `FOLDER/obj`.
 
@@ -6,7 +6,9 @@ use std::error::Error;
 use std::path::Path;
 
 use caustica::lab::hard_cases;
-use serde_json::Value;
+use caustica::methods;
+use caustica::scene::MethodChoice;
+use serde_json::{Value, json};
 
 /// Larger seeds make every try slow.
 const MOST_BYTES: usize = 16 << 10;
@@ -70,6 +72,22 @@ fn main() -> Result<(), Box<dyn Error>> {
             object["mesh"] = Value::from("a_mesh");
         }
         std::fs::write(scenes.join(case.name), serde_json::to_vec(&scene)?)?;
+    }
+    for method in methods::ALL {
+        // With every dial, so that there is something to change.
+        let mut choice = MethodChoice::named(method.name);
+        for dial in method.dials {
+            choice = choice.with(dial, dial.default_value());
+        }
+        let scene = json!({
+            "floor": { "depth_m": 1, "size_m": [2, 2] },
+            "lights": [{ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [1, 1, 1] }],
+            "objects": [{ "mesh": "a_mesh", "translation_m": [0, -0.8, 0], "scale": 0.3 }],
+            "quality": { "method": choice },
+            "output": { "kind": "irradiance_map", "receiver": 0 }
+        });
+        let name = format!("method_{}", method.name);
+        std::fs::write(scenes.join(name), serde_json::to_vec(&scene)?)?;
     }
     for (name, text) in OBJS {
         std::fs::write(objs.join(name), text)?;

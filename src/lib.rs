@@ -9,7 +9,7 @@
 //! Frame ─ encode (CPU) ─> PNG | EXR, and Stats
 //! ```
 //!
-//! 1. [`scene::Scene::from_json`] reads JSON strictly; every complaint has a JSON pointer. [`scene::resolve()`] checks ranges and
+//! 1. [`scene::Scene::from_json`] reads JSON strictly; every complaint has a JSON pointer. [`methods::resolve()`] checks ranges and
 //!    turns mesh ids into [`mesh::Mesh`]es.
 //! 2. [`facts::SceneFacts`] holds the figures that decide what has to be done: the water's surface, which beam sets carry light to
 //!    the receivers and through which rectangle of water, what the camera sees of the floor. All are in coordinates around what is

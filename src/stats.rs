@@ -153,7 +153,7 @@ pub struct PlaneStats {
     pub light: u32,
     /// Index into `objects`.
     pub object: u32,
-    /// Planes that were asked for: `quality.planes`, fewer where level of detail made the map smaller.
+    /// Planes that were asked for by the dial of the method, fewer where level of detail made the map smaller.
     pub specified: u32,
     /// Planes that were used.
     pub used: u32,

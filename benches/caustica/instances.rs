@@ -4,9 +4,9 @@ use std::error::Error;
 
 use caustica::assets::MeshStore;
 use caustica::config::{Limits, RenderConfig};
+use caustica::methods;
 use caustica::render::Renderer;
-use caustica::scene::{ResolvedScene, Scene, resolve};
-use caustica::stages::shaders;
+use caustica::scene::{ResolvedScene, Scene};
 use caustica::stats::Stats;
 use serde_json::{Value, json};
 use tokio_util::sync::CancellationToken;
@@ -36,10 +36,10 @@ pub(crate) fn instances(effort: Effort) -> Result<Table, Box<dyn Error>> {
         &columns,
     );
     let [from, to] = instances_scene::WITHOUT_HIERARCHY;
-    let each = shaders::embedded()
+    let each = methods::embedded()
         .with_replacement("shared/geometry.wgsl", from, to)
         .ok_or("the walk over the instances is not where it was")?;
-    for (walk, sources) in [("hierarchy", shaders::embedded()), ("each", each)] {
+    for (walk, sources) in [("hierarchy", methods::embedded()), ("each", each)] {
         let mut renderer = Renderer::with_shaders(&RenderConfig::default(), sources)?;
         for count in [5, 50, 200] {
             eprintln!("instances, {count}, {walk} …");
@@ -83,5 +83,5 @@ fn resolved(mut scene: Value) -> Result<ResolvedScene, Box<dyn Error>> {
         meshes.push(mesh.mesh);
     }
     let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
-    Ok(resolve(Scene::from_value(scene)?, &limits, find)?)
+    Ok(methods::resolve(Scene::from_value(scene)?, &limits, find)?)
 }

@@ -4,9 +4,9 @@ use std::error::Error;
 use std::time::Instant;
 
 use caustica::config::RenderConfig;
+use caustica::methods;
 use caustica::render::Renderer;
 use caustica::scene::ResolvedScene;
-use caustica::stages::shaders;
 use tokio_util::sync::CancellationToken;
 
 use crate::Effort;
@@ -29,10 +29,13 @@ type Saving = (
 const SAVINGS: [Saving; 2] = [
     (
         "beams that miss a mesh's box, by 25 planes",
-        "planes",
+        "plane_deposit",
         (
             "scenes/teapot_floor.json",
-            &[("/quality/placement", "planes"), ("/quality/planes", "25")],
+            &[
+                ("/quality/method", "planes"),
+                ("/quality/method/planes", "25"),
+            ],
         ),
         (
             "shared/cull.wgsl",
@@ -64,7 +67,7 @@ pub(crate) fn savings(effort: Effort) -> Result<Table, Box<dyn Error>> {
     for (what, pass, (path, dials), (file, from, to)) in SAVINGS {
         eprintln!("savings, {what} …");
         let scene = scene(path, dials)?;
-        let without = shaders::embedded()
+        let without = methods::embedded()
             .with_replacement(file, from, to)
             .ok_or_else(|| format!("{file} has no `{from}`"))?;
         let mut renderers = [

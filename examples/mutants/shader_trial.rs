@@ -5,8 +5,8 @@ use std::error::Error;
 use caustica::config::RenderConfig;
 use caustica::gpu::shader::ShaderSources;
 use caustica::lab::hard_cases::{self, Case, Family, Settings, Truths};
+use caustica::methods;
 use caustica::render::Renderer;
-use caustica::stages::shaders;
 
 use super::shader_plants::ShaderPlant;
 
@@ -87,7 +87,7 @@ impl Bench {
 
 /// The shaders with a plant in them.
 fn planted(plant: &ShaderPlant) -> Result<ShaderSources, Box<dyn Error>> {
-    let sources = shaders::embedded();
+    let sources = methods::embedded();
     let count = sources
         .text(plant.file)
         .map_or(0, |text| text.matches(plant.from).count());

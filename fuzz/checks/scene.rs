@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use caustica::config::Limits;
 use caustica::mesh::{Mesh, obj};
 use caustica::plan::{self, NothingCached, WarmCache};
-use caustica::scene::{Scene, SceneError, resolve};
+use caustica::scene::{Scene, SceneError};
 
 /// The mesh of every object: a tetrahedron.
 const MESH: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
@@ -17,7 +17,7 @@ pub(crate) fn check(bytes: &[u8]) {
         Err(error) => return says_why(&error),
     };
     reads_back(&scene);
-    let resolved = match resolve(scene, &Limits::default(), |_| Some(mesh())) {
+    let resolved = match caustica::methods::resolve(scene, &Limits::default(), |_| Some(mesh())) {
         Ok(resolved) => resolved,
         Err(error) => return says_why(&error),
     };

@@ -15,6 +15,7 @@ use super::frames::{FramePattern, FrameSet};
 use super::scene_flags::SceneArgs;
 use super::{files, picture, scene_file, summary};
 use crate::config::{Limits, RenderConfig};
+use crate::methods;
 use crate::render::{Prepared, RenderError, Renderer};
 use crate::scene::ResolvedScene;
 
@@ -114,7 +115,7 @@ fn moments(
     if let Some((_, time_s)) = moments.last() {
         let mut last = resolved.scene.clone();
         last.time_s = *time_s;
-        last.validate(limits).map_err(|error| CliError::Scene {
+        methods::validate(&last, limits).map_err(|error| CliError::Scene {
             file: args.scene.scene.display().to_string(),
             error,
         })?;

@@ -9,8 +9,9 @@ use super::error::CliError;
 use super::scene_flags::SceneArgs;
 use crate::assets::MeshStore;
 use crate::config::Limits;
+use crate::methods;
 use crate::scene::parse::read_json;
-use crate::scene::{ImageFormat, Issue, ResolvedScene, Scene, SceneError, overrides, resolve};
+use crate::scene::{ImageFormat, Issue, ResolvedScene, Scene, SceneError, overrides};
 
 /// Marks a mesh that is named by content and not by path.
 const ID_PREFIX: &str = "blake3:";
@@ -121,10 +122,10 @@ fn with_meshes(
         }
     }
     if issues.is_empty() {
-        let resolved = resolve(scene, limits, |id| store.get(id))?;
+        let resolved = methods::resolve(scene, limits, |id| store.get(id))?;
         return Ok(SceneFile { resolved, notes });
     }
-    let others = scene.validate(limits).err();
+    let others = methods::validate(&scene, limits).err();
     let others = others.map_or_else(Vec::new, |error| error.issues);
     issues.splice(0..0, others);
     Err(SceneError { issues })

@@ -1,11 +1,13 @@
-//! A flag for every field of `quality` and `output`: `--water-cells 512`, `--width 1920`, `--layers radiance,depth`.
+//! A flag for every field of `quality` and `output`, and for every dial of a method: `--water-cells 512`, `--layers radiance,depth`,
+//! `--method planes --planes 101`.
 
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
-use crate::scene::overrides::{Field, fields};
+use crate::methods;
+use crate::scene::overrides::Field;
 
 /// A scene file and what to change in it.
 #[derive(Clone, Debug, Args)]
@@ -31,7 +33,8 @@ struct Flag {
     value_name: &'static str,
 }
 
-static FLAGS: LazyLock<Vec<Flag>> = LazyLock::new(|| fields().into_iter().map(flag).collect());
+static FLAGS: LazyLock<Vec<Flag>> =
+    LazyLock::new(|| methods::fields().into_iter().map(flag).collect());
 
 fn flag(field: Field) -> Flag {
     let words = match field.words.as_slice() {

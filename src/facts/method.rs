@@ -26,6 +26,8 @@ pub struct MethodFacts {
     pub lights_meshes_by_hits: bool,
     /// Planes that cut the box of an object along the light, for methods that slice objects; else 0.
     pub reference_planes: u32,
+    /// Whether those planes without a surface near them are left out.
+    pub skips_empty_planes: bool,
     /// How often a beam may be laid on an object, at most: the account has room for as much.
     pub deposits_per_beam: u32,
     /// Whether the flux sums have room for one more map of the largest object.

@@ -17,6 +17,9 @@ pub trait RenderBackend {
     /// Where it runs.
     fn adapter(&self) -> AdapterStats;
 
+    /// Hash of all that decides, besides the scene and the adapter, which dials are chosen where `quality` asks for an error or a time.
+    fn dial_basis(&self) -> String;
+
     /// What would run, given what is cached now; looks at the scene where dials are to be chosen.
     fn plan(
         &mut self,
@@ -58,6 +61,10 @@ pub trait RenderBackend {
 impl RenderBackend for Renderer {
     fn adapter(&self) -> AdapterStats {
         Renderer::adapter(self)
+    }
+
+    fn dial_basis(&self) -> String {
+        Renderer::dial_basis(self)
     }
 
     fn plan(

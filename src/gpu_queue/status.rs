@@ -25,6 +25,8 @@ pub struct GpuStatus {
     pub state: GpuState,
     /// The adapter last opened; absent until the first one is.
     pub adapter: Option<AdapterStats>,
+    /// What dials are chosen by on that adapter, as a hash; see [`RenderBackend::dial_basis`](super::RenderBackend::dial_basis).
+    pub dial_basis: String,
     /// Result of comparing it with float64 physics; absent until it has run on the present device.
     pub self_check: Option<SelfCheck>,
     /// How often a device was lost or given up since the start.

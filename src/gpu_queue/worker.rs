@@ -90,11 +90,13 @@ impl Worker {
         let opened = catch_unwind(AssertUnwindSafe(|| {
             let mut backend = (self.factory)()?;
             let check = backend.self_check()?;
-            Ok::<_, GpuError>((backend.adapter(), check, backend.level_map_cache(), backend))
+            let (adapter, dial_basis) = (backend.adapter(), backend.dial_basis());
+            let cache = backend.level_map_cache();
+            Ok::<_, GpuError>((adapter, dial_basis, check, cache, backend))
         }))
         .unwrap_or_else(|panic| Err(GpuError::Validation(panic_message(&*panic))));
         match opened {
-            Ok((adapter, check, cache, backend)) => {
+            Ok((adapter, dial_basis, check, cache, backend)) => {
                 let check = judged(check);
                 tracing::info!(
                     adapter = adapter.name,
@@ -106,6 +108,7 @@ impl Worker {
                 self.publish.send_modify(|status| {
                     status.state = GpuState::Ready;
                     status.adapter = Some(adapter);
+                    status.dial_basis = dial_basis;
                     status.self_check = Some(check);
                     status.level_maps = self.since_the_start(&cache);
                 });

@@ -6,8 +6,9 @@ use axum::http::{HeaderMap, header};
 
 use super::error::ApiError;
 use super::state::AppState;
+use crate::methods;
 use crate::render::{Prepared, RenderError};
-use crate::scene::{ResolvedScene, Scene, resolve};
+use crate::scene::{ResolvedScene, Scene};
 
 /// Media types that a scene is read from.
 const SCENE_TYPES: &str = "application/json";
@@ -26,7 +27,7 @@ impl FromRequest<AppState> for SceneBody {
         // A scene may hold as many bytes as the body limit lets through: reading it is work for another thread.
         run_blocking(move || {
             let scene = Scene::from_json(&body)?;
-            let resolved = resolve(scene, state.limits(), |id| state.meshes().get(id))?;
+            let resolved = methods::resolve(scene, state.limits(), |id| state.meshes().get(id))?;
             Ok(Self(resolved))
         })
         .await

@@ -2,11 +2,12 @@
 
 use std::sync::OnceLock;
 
-use utoipa::OpenApi;
+use utoipa::{OpenApi, ToSchema};
 
 use super::problem::Problem;
 use super::router;
-use crate::scene::Scene;
+use crate::methods;
+use crate::scene::{MethodChoice, Scene};
 
 /// What the contract says besides the routes.
 #[derive(OpenApi)]
@@ -35,7 +36,13 @@ pub(super) fn document() -> utoipa::openapi::OpenApi {
 
 /// The contract.
 pub fn openapi() -> utoipa::openapi::OpenApi {
-    router::api().into_openapi()
+    let mut contract = router::api().into_openapi();
+    if let Some(components) = &mut contract.components {
+        // The scene's own schema of it is neutral: which methods there are is known above the scene.
+        let name = MethodChoice::name().into_owned();
+        components.schemas.insert(name, methods::schema().into());
+    }
+    contract
 }
 
 /// The contract as YAML, as it stands in `openapi.yaml`.

@@ -14,7 +14,8 @@ use crate::frame::Frame;
 use crate::mesh::MeshError;
 use crate::methods;
 use crate::reference::{ReferenceError, ReferenceSettings, irradiance_map};
-use crate::scene::{LayerName, ResolvedScene, Scene, SceneError, resolve};
+use crate::scene::{LayerName, ResolvedScene, Scene, SceneError};
+use crate::stages::level_map;
 use crate::tuning::cost::fit_rate;
 
 /// Timed runs of each scene, after one that warms up.
@@ -78,7 +79,7 @@ pub fn calibration<E: std::error::Error>(
         for pass in first
             .passes
             .iter()
-            .filter(|pass| pass.name.starts_with("level_map"))
+            .filter(|pass| pass.name.starts_with(level_map::PASS.name))
         {
             let each = pass.gpu_ms.map(|ms| ms / f64::from(pass.runs.max(1)));
             runs.entry(pass.name.clone()).or_default().extend(each);
@@ -207,7 +208,7 @@ fn resolved<E: std::error::Error>(mut value: Value) -> Result<ResolvedScene, Mea
         object["mesh"] = json!(id);
     }
     let scene = Scene::from_value(value)?;
-    Ok(resolve(scene, &limits, |id| store.get(id))?)
+    Ok(methods::resolve(scene, &limits, |id| store.get(id))?)
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -1,31 +1,53 @@
 //! The methods: one folder per published method and ours, each with a description, its passes and its shaders; one line each in
 //! [`ALL`]. Everything that has to know which methods there are walks that list: planner, schema, flags, sweeps, tests, README.
 //!
+//! Beside the folders: `check` tells what is wrong with a scene's choice of a method, `describe` makes schema, flags and dials of sweeps from
+//! the list, `reference_planes` has the dial that methods which slice objects share.
+//!
 //! A method reads shared slots (water surface, beams, receivers, points) and makes one product. How to add one:
 //! `docs/adding-a-method.md`.
 
+mod check;
+mod describe;
 pub mod level_map;
 pub mod planes;
+pub mod reference_planes;
 pub mod volumetric;
 
-use crate::facts::{MethodFacts, SceneFacts};
-use crate::graph::plan::Phase;
-use crate::scene::{Issue, Quality, ResolvedScene, SceneError};
-use crate::stages::{AFTER_MAPS, BEFORE_METHOD, PICTURE, Pass};
+pub use check::{check, misfits, resolve, shortest, validate};
+pub use describe::{fields, schema};
 
-/// All methods; the first is the default.
-pub static ALL: [&Method; 3] = [&level_map::METHOD, &planes::METHOD, &volumetric::METHOD];
+use crate::facts::{MethodFacts, SceneFacts};
+use crate::gpu::shader::ShaderSources;
+use crate::graph::plan::Phase;
+use crate::scene::{Dial, Issue, MethodChoice, Quality, ResolvedScene, SceneError};
+use crate::stages::shaders::Embedded;
+use crate::stages::{AFTER_MAPS, BEFORE_METHOD, PICTURE, Pass, shaders};
+
+/// Declares [`ALL`], with its length.
+macro_rules! list {
+    ($($method:ident),+ $(,)?) => {
+        /// All methods; the first is the default.
+        pub static ALL: [&Method; [$(stringify!($method)),+].len()] = [$(&$method::METHOD),+];
+    };
+}
+
+list![level_map, planes, volumetric];
 
 /// A method.
 pub struct Method {
-    /// Its name in `quality.method`.
+    /// Its name in `quality.method`, in snake case; its folders have it too.
     pub name: &'static str,
-    /// What it does, in one sentence.
+    /// What it does, in one sentence, without a capital and a full stop.
     pub summary: &'static str,
     /// Where it was published: author, year, chapter.
     pub paper: &'static str,
-    /// Fields of `quality` that trade its accuracy for time.
-    pub dials: &'static [&'static str],
+    /// Dials that stand with its name in the object `quality.method`; other methods may have them too.
+    pub dials: &'static [&'static Dial],
+    /// Fields of `quality`, shared by all methods, that trade its accuracy for time.
+    pub shared_dials: &'static [&'static str],
+    /// Its WGSL files, see [`crate::embed_shaders`].
+    pub shaders: Embedded,
     /// Its passes, in the order they run: those that follow light between [`BEFORE_METHOD`] and [`AFTER_MAPS`], those that work on
     /// points between [`AFTER_MAPS`] and [`PICTURE`].
     pub passes: &'static [&'static Pass],
@@ -57,6 +79,11 @@ impl std::fmt::Debug for Method {
 }
 
 impl Method {
+    /// Its own dial of this name.
+    pub fn dial(&self, name: &str) -> Option<&'static Dial> {
+        self.dials.iter().copied().find(|dial| dial.name == name)
+    }
+
     /// What the stages need to know of it, with all dials as they are unless set.
     pub fn facts_of_default(&self) -> MethodFacts {
         (self.facts)(&Quality::default())
@@ -79,11 +106,39 @@ impl Method {
     }
 }
 
-/// The method that `quality` names.
+/// The method that `quality` names; the default where there is none of that name, which [`check`] refuses.
 pub fn of(quality: &Quality) -> &'static Method {
-    let name = quality.method_name();
-    let found = ALL.into_iter().find(|method| method.name == name);
+    let kind = quality.method.kind.as_deref();
+    let found = ALL
+        .into_iter()
+        .find(|method| kind.is_some_and(|kind| method.name == kind));
     found.unwrap_or(ALL[0])
+}
+
+/// Every method, and of a method with dials of words a choice for each of their words: what tests and hard cases run that are about
+/// all methods.
+pub fn variants() -> Vec<MethodChoice> {
+    let mut all = Vec::new();
+    for method in ALL {
+        let plain = MethodChoice::named(method.name);
+        let words = method.dials.iter().flat_map(|dial| {
+            let words = dial.words().into_iter();
+            words.map(|word| MethodChoice::named(method.name).with(dial, word))
+        });
+        let mut of_method: Vec<MethodChoice> = words.collect();
+        if of_method.is_empty() {
+            of_method.push(plain);
+        }
+        all.extend(of_method);
+    }
+    all
+}
+
+/// All WGSL files: the shared ones and those of every method.
+pub fn embedded() -> ShaderSources {
+    let own = ALL.into_iter().flat_map(|method| method.shaders);
+    let files: Vec<_> = shaders::SHARED.iter().chain(own).copied().collect();
+    ShaderSources::new(&files)
 }
 
 /// All passes of all methods, each once, in the order in which the methods run them.
@@ -99,7 +154,7 @@ pub fn all_passes() -> Vec<&'static Pass> {
     all
 }
 
-/// The facts of a validated scene; of its warnings only those about lights that are left out.
+/// The facts of a scene that [`resolve`] has accepted; of its warnings only those about lights that are left out.
 ///
 /// # Errors
 /// Those of [`SceneFacts::of`], and a method that cannot make what the scene asks for.
@@ -120,29 +175,42 @@ fn supported(
     facts: impl Fn(&ResolvedScene, MethodFacts) -> Result<SceneFacts, SceneError>,
 ) -> Result<SceneFacts, SceneError> {
     let quality = &resolved.scene.quality;
-    let method = of(quality);
-    let asks_for_dials = quality.target_error.is_some() || quality.time_budget_ms.is_some();
-    if asks_for_dials && !method.dials_can_be_chosen {
-        let reason = format!(
-            "target_error and time_budget_ms cannot choose the dials of method {}",
-            method.name
-        );
-        let issue = Issue::invalid("/quality/method", reason, others(method));
-        return Err(SceneError {
-            issues: vec![issue],
-        });
+    // Scenes that were made in Rust may come here unchecked.
+    let issues = check(quality);
+    if !issues.is_empty() {
+        return Err(SceneError { issues });
     }
+    let method = of(quality);
     let facts = facts(resolved, (method.facts)(quality))?;
     match (method.supports)(&facts) {
         Ok(()) => Ok(facts),
-        Err(reason) => Err(SceneError {
-            issues: vec![Issue::invalid("/quality/method", reason, others(method))],
-        }),
+        Err(reason) => Err(unsupported(method, reason)),
     }
 }
 
-fn others(method: &Method) -> String {
+/// Why the method of a scene cannot make what the scene asks for, in words that another choice of method or dials may answer; `None`
+/// where it can.
+///
+/// # Errors
+/// What is wrong with the scene whatever the method.
+pub fn reason_against(resolved: &ResolvedScene) -> Result<Option<String>, SceneError> {
+    let quality = &resolved.scene.quality;
+    let misfits = misfits(quality);
+    if !misfits.is_empty() {
+        let reasons: Vec<String> = misfits.into_iter().map(|issue| issue.detail).collect();
+        return Ok(Some(reasons.join("; ")));
+    }
+    let issues = check(quality);
+    if !issues.is_empty() {
+        return Err(SceneError { issues });
+    }
+    let method = of(quality);
+    let facts = SceneFacts::of(resolved, (method.facts)(quality))?;
+    Ok((method.supports)(&facts).err())
+}
+
+fn unsupported(method: &Method, reason: String) -> SceneError {
     let others = ALL.into_iter().filter(|other| other.name != method.name);
-    let names: Vec<String> = others.map(|other| format!("`{}`", other.name)).collect();
-    format!("another method: {}", names.join(", "))
+    let pointer = crate::scene::overrides::METHOD;
+    SceneError::from(Issue::invalid(pointer, reason, check::methods(others)))
 }

@@ -33,7 +33,6 @@ use crate::plan::{self, Cached, FramePlan, Plan, Wanted};
 use crate::scene::{ResolvedScene, SceneError};
 use crate::stages::objects::GEOMETRY;
 use crate::stages::points::Point;
-use crate::stages::shaders;
 use crate::stats::{
     AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
     TimeStats, Warning,
@@ -114,7 +113,7 @@ impl Renderer {
     /// # Errors
     /// When no adapter fits, or the device cannot be opened.
     pub fn new(config: &RenderConfig) -> Result<Self, GpuError> {
-        Self::with_shaders(config, shaders::embedded())
+        Self::with_shaders(config, methods::embedded())
     }
 
     /// The same with shader sources of one's own: for tests that break a formula on purpose.
@@ -250,7 +249,7 @@ impl Renderer {
         let tuned = self.tuned(prepared, cancel)?;
         let rendered = tuned.as_ref().map_or(prepared, |tuned| &tuned.rung);
         let (resolved, facts) = (rendered.resolved(), rendered.facts());
-        let plan = plan::plan_scene(facts, Wanted::Frame, self)?;
+        let plan = self.plan_in_budget(facts, Wanted::Frame)?;
         let plan_ms = prepared.took_ms() + ms_since(started);
         let cache_before = self.level_maps.stats();
         let ran = Instant::now();
@@ -334,6 +333,24 @@ impl Renderer {
         let facts = methods::facts(resolved)?;
         let plan = plan::plan_scene(&facts, Wanted::Points, self)?;
         Ok(self.run(resolved, &facts, &plan, cancel)?.points)
+    }
+
+    /// The plan of a frame. Level maps of other scenes make way where they would not fit beside it: whether a frame is rendered does not
+    /// depend on what is cached.
+    fn plan_in_budget(
+        &mut self,
+        facts: &SceneFacts,
+        wanted: Wanted,
+    ) -> Result<FramePlan, RenderError> {
+        let plan = plan::plan_scene(facts, wanted, self)?;
+        let is_over = plan.report.peak_bytes > self.memory_budget_bytes;
+        if !is_over || self.arena.is_none() || !plan::level_maps(facts).is_empty() {
+            return Ok(plan);
+        }
+        self.level_maps.clear();
+        self.arena = None;
+        self.bind_groups.clear();
+        Ok(plan::plan_scene(facts, wanted, self)?)
     }
 
     /// Runs a plan, within the budgets of memory and level maps.

@@ -2,9 +2,9 @@
 
 use tokio_util::sync::CancellationToken;
 
-use super::{Prepared, RenderError, Renderer};
+use super::{Prepared, RenderError, Renderer, bindable_bytes};
 use crate::methods;
-use crate::plan::{self, Wanted, WarmCache};
+use crate::plan::{self, NothingCached, Wanted, WarmCache};
 use crate::scene::ResolvedScene;
 use crate::stats::{ChosenDials, Warning};
 use crate::tuning::choose::{self, Prospect};
@@ -118,17 +118,34 @@ impl Renderer {
         })
     }
 
-    /// The most cells whose frame fits the memory.
+    /// Hash of all that decides, besides the scene and the adapter, which dials are chosen.
+    pub fn dial_basis(&self) -> String {
+        let calibration = &self.calibration;
+        let budgets = [
+            self.memory_budget_bytes,
+            self.level_maps.stats().budget_bytes,
+            bindable_bytes(&self.gpu),
+        ];
+        let basis = serde_json::json!({ "calibration": calibration, "budgets_bytes": budgets });
+        blake3::hash(basis.to_string().as_bytes())
+            .to_hex()
+            .to_string()
+    }
+
+    /// The most cells whose frame fits the memory of an empty GPU, whatever is cached now: the same request gets the same dials.
     fn most_cells(&self, resolved: &ResolvedScene) -> Result<u32, RenderError> {
         let (mut low, mut high) = (ladder::FEWEST_CELLS, ladder::MOST_CELLS + 1);
+        let empty = NothingCached {
+            arena_bytes: self.level_maps.stats().budget_bytes,
+        };
         while high - low > 1 {
             let middle = low + (high - low) / 2;
             let mut rung = with_cells(resolved, middle);
             rung.scene.quality.estimate_error = true;
             let facts = methods::facts(&rung)?;
             let level_maps: u64 = plan::level_maps(&facts).iter().map(|k| k.bytes()).sum();
-            let fits = level_maps <= self.level_maps.stats().budget_bytes;
-            match self.check_budget(&plan::plan_scene(&facts, Wanted::Frame, self)?) {
+            let fits = level_maps <= empty.arena_bytes;
+            match self.check_budget(&plan::plan_scene(&facts, Wanted::Frame, &empty)?) {
                 Ok(()) if fits => low = middle,
                 Ok(()) => high = middle,
                 Err(RenderError::OverBudget { .. }) => high = middle,
@@ -160,7 +177,7 @@ impl Renderer {
         let mut rung = with_cells(resolved, cells);
         rung.scene.quality.estimate_error = true;
         let facts = methods::facts(&rung)?;
-        let plan = plan::plan_scene(&facts, Wanted::Estimate, self)?;
+        let plan = self.plan_in_budget(&facts, Wanted::Estimate)?;
         let run = self.run(&rung, &facts, &plan, cancel)?;
         Ok(run.accuracy.and_then(|accuracy| accuracy.estimated_error))
     }

@@ -1,5 +1,7 @@
 //! What field names tell: their unit, and which field a misspelt one was meant to be.
 
+use super::strict::quoted;
+
 /// Suffix of a field name and the unit it stands for; longer suffixes first.
 const UNITS: [(&str, &str); 9] = [
     ("_w_m2_sr", "W/(m² sr)"),
@@ -24,8 +26,8 @@ pub(super) fn unit_of(field: &str) -> Option<&'static str> {
         .map(|(_, unit)| *unit)
 }
 
-/// The field that `given` was probably meant to be.
-pub(super) fn meant<'a>(given: &str, fields: &[&'a str]) -> Option<&'a str> {
+/// The field (or other name) that `given` was probably meant to be.
+pub fn meant<'a>(given: &str, fields: &[&'a str]) -> Option<&'a str> {
     let given = snake_case(given);
     let same_stem = |field: &&&str| {
         let stem = stem_of(field);
@@ -43,6 +45,28 @@ pub(super) fn meant<'a>(given: &str, fields: &[&'a str]) -> Option<&'a str> {
         .filter(|(edits, field)| *edits <= 2 && edits * 3 <= field.len())
         .min()
         .map(|(_, field)| field)
+}
+
+/// Why an unknown field beside `method` is none, and what to write instead: it may be a dial, which stands within `method`, or
+/// a field that older versions had. `None` where no `method` stands, or the field is a misspelt one.
+pub(super) fn moved(given: &str, fields: &[&str]) -> Option<(&'static str, String)> {
+    if !fields.contains(&"method") {
+        return None;
+    }
+    if given == "placement" {
+        return Some((
+            "the method alone says where light is placed",
+            "the word of `placement` as `method`, and in place of `hit` no `method`".to_owned(),
+        ));
+    }
+    if meant(given, fields).is_some() {
+        return None;
+    }
+    let given = quoted(given);
+    Some((
+        "a dial that only some methods have stands with the method's name",
+        format!("`\"method\": {{ \"kind\": \"…\", \"{given}\": … }}`"),
+    ))
 }
 
 /// `waterCells` and `water-cells` as `water_cells`.

@@ -1,13 +1,14 @@
 //! Single fields of a scene replaced from outside, as by command-line flags.
 //!
 //! Which fields there are follows from the types, so a new field of `quality` or `output` has its flag without a second
-//! edit. Values are put into the JSON before it is read: whatever is wrong with them is said by the same words as if they
+//! edit; the dials of methods join them above, in `methods::fields`. Values are put into the JSON before it is read: whatever is wrong with them is said by the same words as if they
 //! had stood in the scene.
 
 use serde_json::{Map, Number, Value, json};
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
+use super::dials;
 use super::quality::Quality;
 use super::types::{IrradianceMapOutput, Output, ViewOutput};
 
@@ -63,14 +64,18 @@ fn merge(known: &mut Field, other: Field) {
     }
 }
 
+/// Pointer to the choice of the method.
+pub const METHOD: &str = "/quality/method";
+
 /// Replaces the values at some pointers, in order; later ones win.
 ///
-/// A missing `output` becomes a view. A place that cannot be reached, because something that is no object stands in the way,
-/// is left as it is: reading the scene will refuse it.
+/// A missing `output` becomes a view. Naming another method drops the dials of the one before; setting a dial makes an object of a
+/// method that was given as a word. A place that cannot be reached, because something that is no object stands in the way, is left as it
+/// is: reading the scene will refuse it.
 pub fn apply(value: &mut Value, overrides: &[(String, String)]) {
     let known = fields();
-    // The kind first: it decides what else is accepted, and a missing output needs one.
-    let is_kind = |pointer: &str| pointer == "/output/kind";
+    // The kinds first: they decide what else is accepted, and a missing output needs one.
+    let is_kind = |pointer: &str| pointer == "/output/kind" || pointer == METHOD;
     let (kinds, others): (Vec<_>, Vec<_>) =
         overrides.iter().partition(|(pointer, _)| is_kind(pointer));
     for (pointer, text) in kinds.into_iter().chain(others) {
@@ -78,8 +83,22 @@ pub fn apply(value: &mut Value, overrides: &[(String, String)]) {
             .iter()
             .any(|field| field.pointer == *pointer && field.is_list);
         let replacement = if is_list { list(text) } else { single(text) };
+        match value.pointer_mut(METHOD) {
+            Some(method) if pointer == METHOD && dials::is_of_kind(method, &replacement) => {
+                continue;
+            }
+            Some(method) if is_dial(pointer) => dials::as_object(method),
+            _ => {}
+        }
         replace(value, pointer, replacement);
     }
+}
+
+/// Whether a pointer is that of a method's dial.
+pub fn is_dial(pointer: &str) -> bool {
+    pointer
+        .strip_prefix(METHOD)
+        .is_some_and(|rest| rest.starts_with('/'))
 }
 
 fn replace(value: &mut Value, pointer: &str, replacement: Value) {

@@ -6,10 +6,10 @@ use serde_json::Value;
 
 pub use super::error::{Issue, IssueKind, SceneError};
 pub use super::json::{MAX_JSON_BYTES, read as read_json};
-pub use super::strict::from_value;
+pub use super::strict::{from_value, one_of, quoted};
 
 use super::ranges::Integer;
-use super::strict::{carry, one_of, quoted};
+use super::strict::carry;
 use super::types::Scene;
 
 /// A rotation whose length differs less from 1 is left as it is, so that reading what was written changes nothing.
@@ -162,7 +162,7 @@ pub(super) fn wrong_type<E: Error>(value: &Value, accepted: &str) -> E {
 }
 
 /// A value by its type, and by itself where it is short.
-fn json_type(value: &Value) -> String {
+pub(super) fn json_type(value: &Value) -> String {
     match value {
         Value::Null => "null".to_owned(),
         Value::Bool(value) => format!("the boolean {value}"),

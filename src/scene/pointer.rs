@@ -24,6 +24,6 @@ impl fmt::Display for Path<'_> {
 }
 
 /// The pointer from an object to one of its members.
-pub(super) fn member(key: &str) -> String {
+pub fn member(key: &str) -> String {
     format!("/{}", key.replace('~', "~0").replace('/', "~1"))
 }

@@ -3,26 +3,17 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::dials::MethodChoice;
 use super::parse::integer;
-use super::ranges::{
-    Layers, LevelMapTexels, MapTexels, PixelSamples, Planes, SplitLevels, WaterCells,
-};
+use super::ranges::{Layers, LevelMapTexels, MapTexels, PixelSamples, SplitLevels, WaterCells};
 
 /// The dials that trade accuracy for time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Quality {
-    /// How light is carried to the receivers. Default `level_map`.
-    pub method: Method,
-    /// Where on a mesh a beam ends, for method `level_map`. Default `hit`.
-    pub placement: Placement,
-    /// Which reference planes are used, for placement `planes`. Default `uniform`.
-    pub slicing: Slicing,
-    /// Planes that cut a mesh's box along the light, the thesis's n + 1, 2 … 1024. Default 51. Only placement `planes` and method
-    /// `volumetric` have any; both time and, of `volumetric`, memory grow with them.
-    #[serde(deserialize_with = "integer::<Planes, _>")]
-    #[schema(minimum = 2, maximum = 1024)]
-    pub planes: u32,
+    /// How light is carried to the receivers: the name of a method, or an object of its name, as `kind`, and its own dials.
+    #[serde(skip_serializing_if = "MethodChoice::is_default")]
+    pub method: MethodChoice,
     /// Water cells along each side of a light's window, 2 … 2048. Default 256. The error falls with its square.
     #[serde(deserialize_with = "integer::<WaterCells, _>")]
     #[schema(minimum = 2, maximum = 2048)]
@@ -76,10 +67,7 @@ pub struct Quality {
 impl Default for Quality {
     fn default() -> Self {
         Self {
-            method: Method::LevelMap,
-            placement: Placement::Hit,
-            slicing: Slicing::Uniform,
-            planes: 51,
+            method: MethodChoice::default(),
             water_cells: 256,
             map_texels: 512,
             level_map_texels: 256,
@@ -92,52 +80,4 @@ impl Default for Quality {
             pixel_samples: 1,
         }
     }
-}
-
-impl Quality {
-    /// Name of the method.
-    pub fn method_name(&self) -> &'static str {
-        match (self.method, self.placement) {
-            (Method::Volumetric, _) => "volumetric",
-            (Method::LevelMap, Placement::Planes) => "planes",
-            (Method::LevelMap, Placement::Hit) => "level_map",
-        }
-    }
-}
-
-/// How light is carried to the receivers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Method {
-    /// Beams between exact hits on floor and level maps (Tipprasert 2006).
-    #[default]
-    LevelMap,
-    /// What level maps are measured against (Tipprasert 2006, §5.2.1): every plane of a mesh has an image of its slice, drawn for each
-    /// frame, and a caustics map of all beams, which the slice masks. Takes memory for each plane. The floor gets what it gets with
-    /// placement `planes`; `placement` and `slicing` have no say.
-    Volumetric,
-}
-
-/// Where on a mesh a beam ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Placement {
-    /// Rays are marched into the level map until they cross it.
-    #[default]
-    Hit,
-    /// Rays are cut with reference planes and accepted where the level map is within half a distance of planes (Tipprasert 2006,
-    /// §4.4). The more planes, the nearer to `hit`. Does not conserve energy, which the account shows, and objects cast no shadows
-    /// on each other.
-    Planes,
-}
-
-/// Which reference planes are used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Slicing {
-    /// All.
-    #[default]
-    Uniform,
-    /// Those near which the level map has a surface (Tipprasert 2006, §4.7.2): the same picture with fewer planes.
-    Smart,
 }

@@ -135,8 +135,6 @@ integers! {
     Layers = 1..=4;
     /// `output.layer`; that it lies below `quality.layers` is checked where those are known.
     Layer = 0..=3;
-    /// `quality.planes`.
-    Planes = 2..=1024;
     /// `quality.split_levels`.
     SplitLevels = 0..=8;
     /// `quality.pixel_samples`.

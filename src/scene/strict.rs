@@ -47,7 +47,7 @@ pub(super) fn carry(issue: &Issue) -> String {
 }
 
 /// Some words as "`a`, `b` or `c`".
-pub(super) fn one_of(words: &[&str]) -> String {
+pub fn one_of(words: &[&str]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
     match quoted.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
@@ -57,7 +57,7 @@ pub(super) fn one_of(words: &[&str]) -> String {
 }
 
 /// A piece of the input, cut to a readable length.
-pub(super) fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     if text.chars().count() <= MAX_QUOTED {
         return text.to_owned();
     }
@@ -139,13 +139,24 @@ impl Error for ReadError {
     }
 
     fn unknown_field(field: &str, fields: &'static [&'static str]) -> Self {
-        let detail = match names::meant(field, fields) {
-            Some(name) => format!("unknown field `{}`; did you mean `{name}`?", quoted(field)),
-            None => format!("unknown field `{}`", quoted(field)),
+        let name = quoted(field);
+        let (detail, accepted) = match (names::meant(field, fields), names::moved(field, fields)) {
+            (_, Some((why, instead))) => {
+                let accepted = format!("{instead}; or the fields {}", one_of(fields));
+                (format!("unknown field `{name}`: {why}"), accepted)
+            }
+            (Some(meant), None) => (
+                format!("unknown field `{name}`; did you mean `{meant}`?"),
+                format!("the fields {}", one_of(fields)),
+            ),
+            (None, None) => (
+                format!("unknown field `{name}`"),
+                format!("the fields {}", one_of(fields)),
+            ),
         };
         Self {
             pointer: member(field),
-            ..Self::here(detail, format!("the fields {}", one_of(fields)))
+            ..Self::here(detail, accepted)
         }
     }
 

@@ -211,7 +211,6 @@ fn quality(findings: &mut Findings, quality: &Quality) {
     findings.number("/quality/level_of_detail", quality.level_of_detail, detail);
     findings.integer::<ranges::SplitLevels>("/quality/split_levels", quality.split_levels);
     findings.integer::<ranges::PixelSamples>("/quality/pixel_samples", quality.pixel_samples);
-    findings.integer::<ranges::Planes>("/quality/planes", quality.planes);
     if let Some(target) = quality.target_error {
         findings.number("/quality/target_error", target, &ranges::TARGET_ERROR);
     }

@@ -8,7 +8,6 @@ use super::{Groups, Slot, Step};
 use crate::facts::SceneFacts;
 use crate::gpu_struct;
 use crate::graph::{BeamSetRun, Clear};
-use crate::scene::Slicing;
 
 /// Words at the head of the queue of beams that may reach an object's planes: two dispatches with their counts.
 pub const CULL_HEAD_WORDS: u64 = 2 * QUEUE_HEAD_WORDS;
@@ -92,7 +91,7 @@ pub fn planes_uniform(facts: &SceneFacts, object: usize, plane: u32) -> Vec<u8> 
         plane,
         scratch: MapLayout::of(facts).scratch(),
         capacity: narrow(2 * cells * cells),
-        smart: u32::from(facts.quality.slicing == Slicing::Smart),
+        smart: u32::from(facts.method.skips_empty_planes),
     };
     bytemuck::bytes_of(&uniform).to_vec()
 }

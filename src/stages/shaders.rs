@@ -1,73 +1,70 @@
-//! The WGSL files, built into the program.
+//! The WGSL files that are built into the program: those that methods share. A method lists its own.
 
-use crate::gpu::shader::ShaderSources;
+/// Paths below `shaders/` with the text of each file.
+pub type Embedded = &'static [(&'static str, &'static str)];
 
 /// Lists files below `shaders/` with their text.
-macro_rules! embed {
-    ($($path:literal),+ $(,)?) => {
-        &[$(($path, include_str!(concat!("../../shaders/", $path)))),+]
+#[macro_export]
+macro_rules! embed_shaders {
+    ($($path:literal),* $(,)?) => {
+        &[$(($path, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $path)))),*]
     };
 }
 
-/// All shader files; a test compares the list with the folder.
-pub fn embedded() -> ShaderSources {
-    ShaderSources::new(embed![
-        "lib/attenuation.wgsl",
-        "lib/coverage.wgsl",
-        "lib/fresnel.wgsl",
-        "lib/octahedral.wgsl",
-        "lib/refraction.wgsl",
-        "lib/sky.wgsl",
-        "lib/slicing.wgsl",
-        "lib/solid_angle.wgsl",
-        "lib/turns.wgsl",
-        "methods/planes/depth_profile.wgsl",
-        "methods/planes/plane_deposit.wgsl",
-        "methods/volumetric/slice_deposit.wgsl",
-        "shared/account.wgsl",
-        "shared/beam.wgsl",
-        "shared/beam_triangle.wgsl",
-        "shared/comparison.wgsl",
-        "shared/cull.wgsl",
-        "shared/deposit_share.wgsl",
-        "shared/entry.wgsl",
-        "shared/floor_distance.wgsl",
-        "shared/flux.wgsl",
-        "shared/footprint.wgsl",
-        "shared/geometry.wgsl",
-        "shared/grid.wgsl",
-        "shared/grid_beam.wgsl",
-        "shared/grid_rays.wgsl",
-        "shared/level_map_view.wgsl",
-        "shared/level_maps.wgsl",
-        "shared/light.wgsl",
-        "shared/normals.wgsl",
-        "shared/planes_uniform.wgsl",
-        "shared/points.wgsl",
-        "shared/queue.wgsl",
-        "shared/receivers.wgsl",
-        "shared/reference_planes.wgsl",
-        "shared/resolve.wgsl",
-        "shared/trace_light.wgsl",
-        "shared/unit_flux.wgsl",
-        "shared/view.wgsl",
-        "shared/water_surface.wgsl",
-        "shared/wide_footprint.wgsl",
-        "stages/beams.wgsl",
-        "stages/camera_hits.wgsl",
-        "stages/camera_irradiance.wgsl",
-        "stages/coarse_irradiance.wgsl",
-        "stages/deposit.wgsl",
-        "stages/estimate.wgsl",
-        "stages/hits.wgsl",
-        "stages/irradiance.wgsl",
-        "stages/landed.wgsl",
-        "stages/level_map.wgsl",
-        "stages/level_map_pyramid.wgsl",
-        "stages/shade.wgsl",
-        "stages/split.wgsl",
-        "stages/surface.wgsl",
-        "stages/texel_points.wgsl",
-        "stages/unfollowed.wgsl",
-    ])
-}
+/// Shared shader files; a test compares them and those of the methods with the folder.
+pub static SHARED: Embedded = embed_shaders![
+    "lib/attenuation.wgsl",
+    "lib/coverage.wgsl",
+    "lib/fresnel.wgsl",
+    "lib/octahedral.wgsl",
+    "lib/refraction.wgsl",
+    "lib/sky.wgsl",
+    "lib/slicing.wgsl",
+    "lib/solid_angle.wgsl",
+    "lib/turns.wgsl",
+    "shared/account.wgsl",
+    "shared/beam.wgsl",
+    "shared/beam_triangle.wgsl",
+    "shared/comparison.wgsl",
+    "shared/cull.wgsl",
+    "shared/deposit_share.wgsl",
+    "shared/entry.wgsl",
+    "shared/floor_distance.wgsl",
+    "shared/flux.wgsl",
+    "shared/footprint.wgsl",
+    "shared/geometry.wgsl",
+    "shared/grid.wgsl",
+    "shared/grid_beam.wgsl",
+    "shared/grid_rays.wgsl",
+    "shared/level_map_view.wgsl",
+    "shared/level_maps.wgsl",
+    "shared/light.wgsl",
+    "shared/normals.wgsl",
+    "shared/planes_uniform.wgsl",
+    "shared/points.wgsl",
+    "shared/queue.wgsl",
+    "shared/receivers.wgsl",
+    "shared/reference_planes.wgsl",
+    "shared/resolve.wgsl",
+    "shared/trace_light.wgsl",
+    "shared/unit_flux.wgsl",
+    "shared/view.wgsl",
+    "shared/water_surface.wgsl",
+    "shared/wide_footprint.wgsl",
+    "stages/beams.wgsl",
+    "stages/camera_hits.wgsl",
+    "stages/camera_irradiance.wgsl",
+    "stages/coarse_irradiance.wgsl",
+    "stages/deposit.wgsl",
+    "stages/estimate.wgsl",
+    "stages/hits.wgsl",
+    "stages/irradiance.wgsl",
+    "stages/landed.wgsl",
+    "stages/level_map.wgsl",
+    "stages/level_map_pyramid.wgsl",
+    "stages/shade.wgsl",
+    "stages/split.wgsl",
+    "stages/surface.wgsl",
+    "stages/texel_points.wgsl",
+    "stages/unfollowed.wgsl",
+];

@@ -11,3 +11,10 @@
 pub mod choose;
 pub mod cost;
 pub mod ladder;
+
+use crate::scene::Quality;
+
+/// Whether dials are chosen for what `quality` asks.
+pub fn chooses_dials(quality: &Quality) -> bool {
+    quality.target_error.is_some() || quality.time_budget_ms.is_some()
+}

@@ -1,8 +1,12 @@
 //! Dials: what may be swept, and how it is written.
 
 use caustica::config::Limits;
-use caustica::lab::study::dial::{Dial, DialError, dials, with_dials};
-use caustica::scene::Method;
+use caustica::lab::study::dial::{Dial, DialError, Setting, dials, with_dials};
+use caustica::methods;
+use caustica::scene::{MethodChoice, ResolvedScene};
+
+use caustica::lab::study::sweep::{self, SweepSettings};
+use serde_json::json;
 
 use super::scene_files;
 
@@ -62,46 +66,95 @@ fn what_is_no_dial_is_refused_with_what_would_be() {
 }
 
 #[test]
-fn every_field_of_quality_but_the_switch_of_the_estimate_is_a_dial() {
+fn every_field_of_quality_but_the_switch_of_the_estimate_is_a_dial_and_those_of_methods_are() {
     let json = serde_json::to_value(caustica::scene::Quality {
+        method: MethodChoice::named("any"),
         target_error: Some(0.1),
         time_budget_ms: Some(1.0),
         ..Default::default()
     })
     .unwrap();
-    let mut fields: Vec<&String> = json.as_object().unwrap().keys().collect();
-    fields.retain(|field| *field != "estimate_error");
-    fields.sort();
-    let names: Vec<String> = dials().into_iter().map(|dial| dial.name).collect();
-    assert_eq!(fields, names.iter().collect::<Vec<_>>());
+    let mut expected: Vec<&str> = json.as_object().unwrap().keys().map(|k| &**k).collect();
+    expected.retain(|field| *field != "estimate_error");
+    for method in methods::ALL {
+        expected.extend(method.dials.iter().map(|dial| dial.name));
+    }
+    expected.sort();
+    expected.dedup();
+    let known = dials();
+    let mut names: Vec<&str> = known.iter().map(|dial| &*dial.name).collect();
+    names.sort();
+    assert_eq!(names, expected);
+}
+
+fn set(base: &ResolvedScene, dials: &[(&str, &str)]) -> Result<ResolvedScene, String> {
+    let dials: Vec<(String, String)> = dials
+        .iter()
+        .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
+        .collect();
+    match with_dials(base, &dials, &Limits::default()) {
+        Ok(Setting::Scene(scene)) => Ok(*scene),
+        Ok(Setting::LeftOut(reason)) => Err(format!("left out: {reason}")),
+        Err(error) => Err(error.issues[0].pointer.clone()),
+    }
 }
 
 #[test]
 fn values_are_checked_as_the_scene_would() {
     let scene = scene_files::load("sine_pool", &[]);
-    let limits = Limits::default();
-    let set = |name: &str, value: &str| {
-        with_dials(&scene, &[(name.to_owned(), value.to_owned())], &limits)
-    };
-    let changed = set("water_cells", "77").unwrap();
+    let changed = set(&scene, &[("water_cells", "77")]).unwrap();
     assert_eq!(changed.scene.quality.water_cells, 77);
-    assert_eq!(
-        set("method", "level_map").unwrap().scene.quality.method,
-        Method::LevelMap
-    );
     for (name, value) in [
         ("water_cells", "1"),
         ("water_cells", "few"),
         ("method", "magic"),
         ("level_map_texels", "100"),
     ] {
-        let error = set(name, value).unwrap_err();
-        assert_eq!(
-            error.issues[0].pointer,
-            format!("/quality/{name}"),
-            "{error}"
+        let refused = set(&scene, &[(name, value)]).unwrap_err();
+        assert_eq!(refused, format!("/quality/{name}"), "{value}");
+    }
+}
+
+#[test]
+fn dials_of_methods_are_swept_where_the_method_has_them() {
+    let scene = scene_files::load("sine_pool", &[]);
+    let planes = |of: &ResolvedScene| serde_json::to_value(&of.scene.quality.method).unwrap();
+    let found = set(&scene, &[("planes", "21"), ("method", "planes")]).unwrap();
+    assert_eq!(planes(&found), json!({ "kind": "planes", "planes": 21 }));
+    // The same setting written otherwise is the same scene.
+    let other = set(&found, &[("method", "level_map")]).unwrap();
+    assert_eq!(other.hash(), scene.hash());
+    let refused = set(&found, &[("planes", "1")]).unwrap_err();
+    assert_eq!(refused, "/quality/method/planes");
+    // What another method could do is left out, and is no error of the study.
+    for dials in [
+        &[("planes", "21")][..],
+        &[("planes", "21"), ("method", "level_map")],
+    ] {
+        let reason = set(&scene, dials).unwrap_err();
+        assert!(
+            reason.starts_with("left out: method level_map has no dial `planes`"),
+            "{reason}"
         );
     }
+    let reason = set(&scene, &[("method", "planes"), ("target_error", "0.1")]).unwrap_err();
+    assert!(reason.starts_with("left out: target_error"), "{reason}");
+}
+
+#[test]
+fn a_study_that_no_method_can_do_says_why_before_it_starts() {
+    let scene = scene_files::load("sine_pool", &[]);
+    let check = |texts: &[&str]| {
+        let settings = SweepSettings {
+            dials: texts.iter().map(|t| Dial::parse(t).unwrap()).collect(),
+            grid: true,
+            runs: 1,
+        };
+        sweep::check::<std::convert::Infallible>(&scene, &settings, &Limits::default())
+    };
+    check(&["method=level_map,planes", "planes=21..101"]).unwrap();
+    let error = check(&["planes=21..101"]).unwrap_err().to_string();
+    assert!(error.contains("method level_map has no dial"), "{error}");
 }
 
 #[test]

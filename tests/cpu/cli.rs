@@ -7,9 +7,9 @@ use caustica::cli::frames::{FramePattern, FrameSet};
 use caustica::cli::health::ServiceUrl;
 use caustica::cli::{Cli, animate, plan, selfcheck, summary};
 use caustica::config::AdapterPolicy;
+use caustica::methods;
 use caustica::plan::{Plan, PlannedPass, PlannedSlot};
 use caustica::render::{SelfCheck, SelfCheckItem};
-use caustica::scene::overrides::fields;
 use caustica::stats::{AbsentPass, ChosenDials};
 use clap::{CommandFactory, Parser};
 
@@ -28,7 +28,7 @@ fn every_field_has_a_flag_in_every_command_that_reads_a_scene() {
         let mut root = Cli::command();
         let command = root.find_subcommand_mut(name).unwrap();
         let help = command.render_long_help().to_string();
-        for field in fields() {
+        for field in methods::fields() {
             assert!(
                 help.contains(&format!("--{} <VALUE", field.flag)),
                 "{name} --{}",

@@ -7,7 +7,8 @@ use caustica::lab::experiment::{
 };
 use caustica::lab::shapes;
 use caustica::lab::study::study::SpreadMs;
-use caustica::scene::{Method, Placement, Slicing};
+use caustica::scene::Quality;
+use serde_json::json;
 
 #[test]
 fn numbers_of_planes_are_a_list_or_a_range() {
@@ -36,17 +37,25 @@ fn ways_differ_in_nothing_but_the_way() {
     let base = scene("box", 32, 64).unwrap();
     let quality = |way: Way| way.of(&base).scene.quality;
     let uniform = quality(Way::Uniform(9));
+    let method = |quality: &Quality| json!(quality.method);
+    assert_eq!(method(&uniform), json!({ "kind": "planes", "planes": 9 }));
     assert_eq!(
-        (uniform.method, uniform.placement),
-        (Method::LevelMap, Placement::Planes)
+        method(&quality(Way::Smart(9))),
+        json!({ "kind": "planes", "planes": 9, "slicing": "smart" })
     );
-    assert_eq!((uniform.planes, uniform.slicing), (9, Slicing::Uniform));
-    assert_eq!(quality(Way::Smart(9)).slicing, Slicing::Smart);
-    assert_eq!(quality(Way::Volumetric(9)).method, Method::Volumetric);
+    let slices = quality(Way::Volumetric(9));
+    assert_eq!(
+        method(&slices),
+        json!({ "kind": "volumetric", "planes": 9 })
+    );
     assert_eq!(quality(Way::Hit), base.scene.quality);
-    let mut same = quality(Way::Volumetric(9));
-    same.method = Method::LevelMap;
-    assert_eq!(same, uniform);
+    for way in [slices, quality(Way::Smart(9))] {
+        let same = Quality {
+            method: uniform.method.clone(),
+            ..way
+        };
+        assert_eq!(same, uniform);
+    }
     assert!(scene("unicorn", 32, 64).is_err());
 }
 

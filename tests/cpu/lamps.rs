@@ -7,12 +7,12 @@ use caustica::facts::source::Source;
 use caustica::physics::refraction::{entry_distance, refract_direction};
 use caustica::physics::solid_angle::solid_angle;
 use caustica::reference::closed_form::LampOverFlatWater;
-use caustica::reference::{ReferenceSettings, irradiance_map};
-use caustica::scene::{ResolvedScene, Scene};
+use caustica::scene::Scene;
 use caustica::waves::normal;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
+use super::reference::count;
 use super::scene_files;
 
 /// A lamp over a pool of 2 m; the map is 2 m × 2 m.
@@ -301,14 +301,13 @@ fn windows_are_no_wider_than_light_needs() {
     assert!(size.max_element() < 0.2, "{size}");
 }
 
-fn map_of(resolved: &ResolvedScene, rays: u64) -> caustica::reference::ReferenceMap {
-    let settings = ReferenceSettings {
-        target_error: None,
-        max_rays: rays,
-        initial_rays: 1,
-    };
-    irradiance_map(resolved, &settings, &|_| ()).unwrap()
+/// Flat water of this index and extinction, alike in all channels.
+fn flat_water(ior: f64, absorption: f64) -> Value {
+    json!({ "ior": ior, "absorption_per_m": [absorption, absorption, absorption] })
 }
+
+/// Rays of the maps that are compared with closed forms.
+const RAYS: u64 = 40_000_000;
 
 /// Mean over each texel of the closed form, from 4 × 4 points.
 pub(crate) fn closed_form_map(lamp: &LampOverFlatWater, foot: [f64; 2], side: usize) -> Vec<f64> {
@@ -338,9 +337,8 @@ fn the_reference_agrees_with_the_closed_form() {
         (4.0, 1.5, 0.1, 1e-3),
         (-0.5, 1.333, 0.3, 1e-3),
     ] {
-        let water = json!({ "ior": ior, "absorption_per_m": [absorption, absorption, absorption] });
-        let resolved = scene_files::scene(pool([0.2, y, -0.1], water, 32));
-        let map = map_of(&resolved, 40_000_000);
+        let resolved = scene_files::scene(pool([0.2, y, -0.1], flat_water(ior, absorption), 32));
+        let map = count(&resolved, RAYS);
         let lamp = LampOverFlatWater {
             height_m: y,
             depth_m: 2.0,
@@ -377,8 +375,8 @@ fn the_reference_agrees_with_the_closed_form() {
 /// The solid angle under which flat water sees the light is what the reference says falls on it.
 #[test]
 fn the_reference_emits_the_solid_angle_of_its_window() {
-    let resolved = scene_files::scene(pool([0.2, 1.0, -0.1], json!({}), 32));
-    let map = map_of(&resolved, 10_000_000);
+    let resolved = scene_files::scene(pool([0.2, 1.0, -0.1], flat_water(1.333, 0.0), 32));
+    let map = count(&resolved, RAYS);
     let window = map.windows[0];
     let corner = DVec3::new(window.min_m.x - 0.2, -1.0, window.min_m.y + 0.1);
     let x = DVec3::X * (window.max_m.x - window.min_m.x);

@@ -29,6 +29,7 @@ mod mesh_hierarchy;
 mod mesh_obj;
 mod mesh_shapes;
 mod mesh_store;
+mod methods;
 mod metrics;
 mod mutants;
 mod physics;
@@ -65,5 +66,7 @@ mod teapot;
 mod tone;
 mod truth;
 mod truth_disk;
+#[path = "../support/truths.rs"]
+mod truths;
 mod tuning;
 mod waves;

@@ -118,7 +118,7 @@ fn exact([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> Option<(f64, f6
     Some((ac.dot(q) / determinant, u.min(v).min(1.0 - u - v)))
 }
 
-/// Walks random rays; returns how many hit.
+/// Walks random rays from a cube of `half` a side towards the triangles; returns how many hit.
 fn compare(triangles: &[Triangle], rays: usize, half: f32, random: &mut Random) -> usize {
     let nodes = hierarchy::build(triangles);
     check_structure(&nodes, triangles);
@@ -129,7 +129,7 @@ fn compare(triangles: &[Triangle], rays: usize, half: f32, random: &mut Random) 
     let mut hits = 0;
     for index in 0..rays {
         let origin = random.point(half);
-        let mut direction = random.point(half) - origin;
+        let mut direction = random.point(half.min(size)) - origin;
         // Every fourth ray runs along an axis or in a plane of two axes.
         match index % 16 {
             0 => direction = Vec3::X * direction.x.signum(),
@@ -267,7 +267,8 @@ fn one_triangle_is_a_leaf() {
         -0.5,
     );
     assert_eq!(back.map(|h| h.t), Some(-1.0));
-    compare(&triangles, 500, 1.5, &mut Random(1));
+    let hits = compare(&triangles, 500, 1.5, &mut Random(1));
+    assert!(hits > 10, "{hits}");
 }
 
 #[test]
@@ -317,9 +318,10 @@ fn sizes_far_apart_agree_with_brute_force() {
         let size = 10_f32.powi(power);
         triangles.extend(soup(3, size, size, &mut random));
     }
-    compare(&triangles, 500, 1.0, &mut random);
-    compare(&triangles, 500, 100.0, &mut random);
-    compare(&triangles, 500, 1e-6, &mut random);
+    // From near all of them, from far away, whence few rays hit, and from among the smallest.
+    let hits = [(1.0, 500), (100.0, 5000), (1e-6, 500)]
+        .map(|(half, rays)| compare(&triangles, rays, half, &mut random));
+    assert!(hits.iter().all(|&hits| hits > 10), "{hits:?}");
 }
 
 #[test]

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use caustica::facts::SceneFacts;
 use caustica::facts::placement::LevelMapKey;
-use caustica::graph::{Allocation, BeamSetRun, PlanError};
+use caustica::graph::{Allocation, BeamSetRun, PlanError, Scope};
 use caustica::methods;
 use caustica::plan::{self, Cached, Plan, Wanted};
 use caustica::scene::ResolvedScene;
@@ -83,19 +84,33 @@ fn pool_with(changes: &[(&str, Value)]) -> Plan {
     planned(&scene_files::scene(scene))
 }
 
-const LEVEL_MAP_PASSES: [&str; 2] = ["level_map", "level_map_pyramid"];
 /// What places light on meshes by planes.
 const PLANE_PASSES: [&str; 2] = ["depth_profile", "plane_deposit"];
-const CAMERA_PASSES: [&str; 3] = ["camera_hits", "camera_irradiance", "shade"];
-const SUN_PASSES: [&str; 7] = [
-    "surface",
-    "beams",
-    "hits",
-    "deposit",
-    "split",
-    "landed",
-    "irradiance",
-];
+
+/// Names of the default method's passes of these scopes.
+fn passes_of(scopes: &[Scope]) -> Vec<&'static str> {
+    let all = default_passes().into_iter();
+    let found: Vec<&str> = all
+        .filter(|pass| scopes.contains(&pass.steps.scope()))
+        .map(|pass| pass.name)
+        .collect();
+    assert!(!found.is_empty(), "no pass runs for {scopes:?}");
+    found
+}
+
+fn level_map_passes() -> Vec<&'static str> {
+    passes_of(&[Scope::LevelMap])
+}
+
+/// What follows lights, and compares what came of them.
+fn light_passes() -> Vec<&'static str> {
+    passes_of(&[
+        Scope::BeamSet,
+        Scope::FineBeamSet,
+        Scope::CoarseBeamSet,
+        Scope::Estimate,
+    ])
+}
 
 fn snapshot(name: &str) -> PathBuf {
     scene_files::folder()
@@ -158,21 +173,66 @@ fn a_full_scene_needs_every_pass() {
     assert!(plan.passes.iter().all(|pass| !pass.reason.is_empty()));
 }
 
+/// A pass is in where the scene wants it and something reads what it writes: the output, or a later pass that is in.
 #[test]
 fn every_pass_is_in_or_out_with_a_reason() {
-    for name in scene_files::names() {
-        let plan = planned(&scene_files::load(&name, &[]));
-        for pass in default_passes() {
-            let is_in = names(&plan).contains(&pass.name);
-            assert_ne!(
-                is_in,
-                is_absent(&plan, pass.name),
-                "{} in {name}",
-                pass.name
-            );
+    let of = |resolved: &ResolvedScene| methods::facts_with_warnings(resolved).unwrap();
+    let mut all: Vec<(String, SceneFacts, Wanted)> = scene_files::names()
+        .into_iter()
+        .map(|name| {
+            (
+                name.clone(),
+                of(&scene_files::load(&name, &[])),
+                Wanted::Frame,
+            )
+        })
+        .collect();
+    let level_maps = of(&scene_files::scene(pool()));
+    let name = "the level maps of a pool".to_owned();
+    all.push((name, level_maps, Wanted::LevelMaps));
+    let (mut refused, mut unread) = (0, 0);
+    let passes = default_passes();
+    for (name, facts, asked) in all {
+        let plan = plan::plan_scene(&facts, asked, &FakeCache { full: false }).unwrap();
+        let plan = plan.report;
+        let is_in = |pass: &Pass| names(&plan).contains(&pass.name);
+        let awaited = plan::awaited(&facts, asked);
+        for (index, pass) in passes.iter().copied().enumerate() {
+            let context = format!("{} in {name}", pass.name);
+            let is_read = pass.writes.iter().any(|slot| {
+                let later = passes[index + 1..].iter().filter(|later| is_in(later));
+                let mut read =
+                    later.flat_map(|later| later.reads.iter().chain(later.reads_if_present));
+                awaited.contains(slot) || read.any(|read| read == slot)
+            });
+            let wanted = (pass.wanted)(&facts);
+            assert_eq!(is_in(pass), wanted.is_ok() && is_read, "{context}");
+            assert_ne!(is_in(pass), is_absent(&plan, pass.name), "{context}");
+            let reason = reason_of(&plan, pass.name);
+            match wanted {
+                Ok(wanted) if is_read => assert_eq!(reason, wanted, "{context}"),
+                Ok(_) => {
+                    assert!(
+                        reason.starts_with("nothing in this frame reads"),
+                        "{context}"
+                    );
+                    unread += 1;
+                }
+                Err(refusal) => {
+                    assert_eq!(reason, refusal, "{context}");
+                    refused += 1;
+                }
+            }
         }
-        assert!(plan.absent.iter().all(|pass| pass.reason.len() > 10));
+        let there = plan.passes.iter().map(|pass| &pass.reason);
+        let mut reasons = there.chain(plan.absent.iter().map(|pass| &pass.reason));
+        assert!(reasons.all(|reason| reason.len() > 10), "{name}");
+        // A pass that is in once runs in the order of the list.
+        let listed = passes.iter().filter(|pass| is_in(pass));
+        assert!(listed.map(|pass| pass.name).eq(names(&plan)), "{name}");
     }
+    // Both ways to be out were looked at.
+    assert!(refused > 0 && unread > 0, "{refused}, {unread}");
 }
 
 #[test]
@@ -197,7 +257,7 @@ fn one_channel_takes_a_third_of_the_flux_sums() {
 #[test]
 fn without_meshes_there_are_no_level_maps() {
     let plan = pool_with(&[("objects", json!([]))]);
-    for pass in LEVEL_MAP_PASSES {
+    for pass in level_map_passes() {
         assert!(is_absent(&plan, pass), "{pass}");
     }
     assert!(is_absent(&plan, "split"));
@@ -211,7 +271,7 @@ fn without_meshes_there_are_no_level_maps() {
 #[test]
 fn cached_level_maps_are_not_built_again() {
     let plan = planned_with(&scene_files::scene(pool()), true);
-    for pass in LEVEL_MAP_PASSES {
+    for pass in level_map_passes() {
         assert!(is_absent(&plan, pass), "{pass}");
     }
     assert!(names(&plan).contains(&"split"));
@@ -228,7 +288,7 @@ fn an_irradiance_map_needs_no_camera() {
         "output",
         json!({ "kind": "irradiance_map", "receiver": "floor" }),
     )]);
-    for pass in CAMERA_PASSES {
+    for pass in passes_of(&[Scope::Band]) {
         assert!(is_absent(&plan, pass), "{pass}");
     }
 }
@@ -236,7 +296,7 @@ fn an_irradiance_map_needs_no_camera() {
 #[test]
 fn nothing_under_water_means_no_caustics() {
     let plan = planned(&scene_files::load("dry", &[]));
-    for pass in SUN_PASSES.iter().chain(&LEVEL_MAP_PASSES) {
+    for pass in light_passes().into_iter().chain(level_map_passes()) {
         assert!(is_absent(&plan, pass), "{pass}");
     }
 }
@@ -247,7 +307,7 @@ fn no_sun_means_no_caustics() {
         let sun =
             json!([{ "kind": "sun", "elevation_deg": elevation, "irradiance_w_m2": [1, 1, 1] }]);
         let plan = pool_with(&[("lights", sun)]);
-        for pass in SUN_PASSES.iter().chain(&LEVEL_MAP_PASSES) {
+        for pass in light_passes().into_iter().chain(level_map_passes()) {
             assert!(is_absent(&plan, pass), "{pass} at {elevation}");
         }
     }
@@ -532,7 +592,7 @@ fn planes_are_in_where_they_are_asked_for() {
         assert!(!names(&hit).contains(&pass), "{pass}");
     }
     assert_eq!(bytes_of(&hit, "plane_lists"), None);
-    let quality = json!({ "placement": "planes", "planes": 17 });
+    let quality = json!({ "method": { "kind": "planes", "planes": 17 } });
     let planes = pool_with(&[("quality", quality)]);
     assert!(names(&planes).contains(&"depth_profile"));
     assert_eq!(
@@ -544,7 +604,7 @@ fn planes_are_in_where_they_are_asked_for() {
         "all 17 planes are used"
     );
     assert!(!names(&planes).contains(&"slice_deposit"));
-    let quality = json!({ "placement": "planes", "planes": 17, "slicing": "smart" });
+    let quality = json!({ "method": { "kind": "planes", "planes": 17, "slicing": "smart" } });
     let smart = pool_with(&[("quality", quality)]);
     let reason = reason_of(&smart, "depth_profile");
     assert_eq!(
@@ -552,7 +612,7 @@ fn planes_are_in_where_they_are_asked_for() {
         "of 17 planes those without a surface near them are left out"
     );
     let dry = pool_with(&[
-        ("quality", json!({ "placement": "planes" })),
+        ("quality", json!({ "method": "planes" })),
         ("objects", json!([])),
     ]);
     assert_eq!(reason_of(&dry, "plane_deposit"), "no object is under water");
@@ -561,7 +621,8 @@ fn planes_are_in_where_they_are_asked_for() {
 #[test]
 fn slices_take_memory_for_each_plane_and_level_maps_do_not() {
     let with = |method: &str, planes: u32| {
-        let quality = json!({ "method": method, "placement": "planes", "planes": planes, "level_map_texels": 128 });
+        let quality =
+            json!({ "method": { "kind": method, "planes": planes }, "level_map_texels": 128 });
         pool_with(&[("quality", quality)])
     };
     let image = 4 * 128 * 128;
@@ -578,7 +639,7 @@ fn slices_take_memory_for_each_plane_and_level_maps_do_not() {
     }
     let growth = with("volumetric", 100).peak_bytes - with("volumetric", 50).peak_bytes;
     assert_eq!(growth, 50 * image);
-    let growth = with("level_map", 100).peak_bytes - with("level_map", 50).peak_bytes;
+    let growth = with("planes", 100).peak_bytes - with("planes", 50).peak_bytes;
     assert_eq!(growth, 50 * 2 * 4, "two words of the list for each plane");
 }
 
@@ -592,7 +653,7 @@ fn planes_say_what_they_leave_out() {
         { "mesh": "box.obj", "translation_m": [0, -1, 0] },
         { "mesh": "box.obj", "translation_m": [2, -1, 0] }
     ]);
-    let planes = json!({ "placement": "planes", "layers": 2 });
+    let planes = json!({ "method": "planes", "layers": 2 });
     let found = codes(&[("objects", two.clone()), ("quality", planes)]);
     assert!(found.contains(&"objects_cast_no_shadows_on_objects".to_owned()));
     assert!(found.contains(&"further_layers_stay_dark".to_owned()));
@@ -608,7 +669,7 @@ fn sums_of_planes_are_wide() {
     let mut scene = pool();
     for (quality, wide) in [
         (json!({}), false),
-        (json!({ "placement": "planes" }), true),
+        (json!({ "method": "planes" }), true),
         (json!({ "method": "volumetric" }), true),
     ] {
         scene["quality"] = quality;

@@ -109,13 +109,55 @@ fn the_installer_explains_itself_and_refuses_typing_errors() {
     let help = run("--help");
     assert!(help.status.success());
     let help = String::from_utf8_lossy(&help.stdout).into_owned();
-    for option in ["--build", "--run", "--container"] {
+    for option in ["--build", "--run", "--container", "--lint"] {
         assert!(help.contains(option), "{help}");
     }
     assert!(!help.contains("set -eu"), "only the comment: {help}");
     let wrong = run("--biuld");
     assert_eq!(wrong.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&wrong.stderr).contains("unknown option --biuld"));
+}
+
+#[cfg(unix)]
+#[test]
+fn the_installer_adds_what_linting_needs_or_says_what_is_missing() {
+    // Programs are functions of the shell that reads the installer, and there are no others.
+    let lint = |programs: &str| {
+        let installer = root().join(INSTALLER);
+        let script = format!("{programs}\nset -- --lint\n. '{}'", installer.display());
+        let output = Command::new("/bin/sh")
+            .args(["-c", &script])
+            .env("PATH", "/nowhere")
+            .output()
+            .expect("a shell");
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        let [out, err] = [text(&output.stdout), text(&output.stderr)];
+        (output.status.code(), out, err)
+    };
+    let complete = "cargo() { :; }\nrustup() { echo \"rustup $*\" >&2; }";
+    assert_eq!(lint(complete), (Some(0), String::new(), String::new()));
+
+    let minimal = "cargo() { [ -n \"${added-}\" ]; }";
+    let with_rustup = format!("{minimal}\nrustup() {{ echo \"rustup $*\" >&2; added=yes; }}");
+    let (code, _, told) = lint(&with_rustup);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(
+        told.contains("rustup component add rustfmt clippy\n"),
+        "{told}"
+    );
+
+    // Without rustup, or where it cannot help.
+    let helpless = format!("{minimal}\nrustup() {{ :; }}");
+    for programs in [minimal, helpless.as_str()] {
+        let (code, _, told) = lint(programs);
+        assert_eq!(code, Some(1), "{told}");
+        assert!(told.contains("please install rustfmt and clippy"), "{told}");
+    }
+    let makefile = text("Makefile");
+    let (_, recipe) = makefile.split_once("\nlint: ").expect("a target");
+    let asks = format!("./{INSTALLER} --lint\n");
+    assert!(recipe.find(&asks) < recipe.find("fmt --check"), "{recipe}");
+    assert!(recipe.contains(&asks), "{recipe}");
 }
 
 #[test]
@@ -196,12 +238,20 @@ fn every_make_command_that_the_readme_names_exists() {
 }
 
 #[test]
-fn the_ci_ends_with_the_tests() {
+fn the_ci_lints_and_ends_with_the_tests() {
     let ci = text(".ci/run");
     assert!(ci.contains("\nset -euo pipefail\n"));
+    let makes: Vec<&str> = ci.lines().filter(|line| line.contains("make ")).collect();
+    assert_eq!(
+        makes,
+        [
+            "make --no-print-directory lint",
+            "make --no-print-directory test"
+        ]
+    );
     assert_eq!(
         ci.lines().last(),
-        Some("make --no-print-directory test"),
+        makes.last().copied(),
         "the output has to end in the summary of the tests"
     );
 }

@@ -10,6 +10,7 @@ use caustica::waves::{Surface, normal};
 use glam::DVec2;
 
 use crate::reference_closed_form::single_sine;
+use crate::truths;
 
 pub(crate) const SINE_POOL: &str = include_str!("../../scenes/sine_pool.json");
 pub(crate) const FLAT: &str = include_str!("../../scenes/flat.json");
@@ -40,12 +41,15 @@ pub(crate) fn set_map(scene: &mut Scene, half_m: f64, width: u32, height: u32) {
 
 /// All rays at once, no target.
 pub(crate) fn count(resolved: &ResolvedScene, rays: u64) -> ReferenceMap {
-    let settings = ReferenceSettings {
+    truths::floor_map(resolved, &by_rays(rays))
+}
+
+fn by_rays(rays: u64) -> ReferenceSettings {
+    ReferenceSettings {
         target_error: None,
         max_rays: rays,
         initial_rays: 1,
-    };
-    irradiance_map(resolved, &settings, &|_| ()).unwrap()
+    }
 }
 
 fn l1(a: &ReferenceMap, b: &ReferenceMap) -> f64 {
@@ -172,7 +176,7 @@ fn the_bits_do_not_depend_on_run_or_threads() {
             .num_threads(threads)
             .build()
             .unwrap()
-            .install(|| count(&pool, 2_000_000))
+            .install(|| irradiance_map(&pool, &by_rays(2_000_000), &|_| ()).unwrap())
     };
     let first = with_threads(1);
     for threads in [1, 2, 5] {

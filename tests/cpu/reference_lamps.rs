@@ -7,17 +7,17 @@ use caustica::accuracy::metrics::relative_l1;
 use caustica::physics::fresnel::fresnel_transmittance;
 use caustica::physics::refraction::{entry_distance, refract_direction};
 use caustica::reference::closed_form::LampOverFlatWater;
-use caustica::reference::{
-    ReferenceSettings, Truth, TruthKind, TruthSettings, irradiance_map, truth,
-};
+use caustica::reference::{TruthKind, TruthSettings, truth};
 use caustica::scene::ResolvedScene;
 use caustica::waves::{Surface, normal};
 use glam::{DVec2, DVec3, Vec3};
 use serde_json::{Value, json};
 
 use super::lamps;
+use super::reference::count;
 use super::scene_files::{self, mesh_of, with_meshes};
 use super::truth::box_obj;
+use super::truths::truth_to as find;
 
 /// Extinction of the red channel of [`pool`], 1/m.
 const EXTINCTION_PER_M: f64 = 0.3;
@@ -54,23 +54,6 @@ fn waves() -> Value {
 fn wave_height_m(x_m: f64, z_m: f64) -> f64 {
     let scene = pool(Vec3::ONE, json!([]), |v| v["water"]["waves"] = waves());
     Surface::of(&scene.scene).at(x_m, z_m).height_m
-}
-
-fn find(scene: &ResolvedScene, target_error: f64) -> Truth {
-    let settings = TruthSettings {
-        target_error: Some(target_error),
-        ..TruthSettings::default()
-    };
-    truth(scene, &settings, &|_| (), &|| false).unwrap()
-}
-
-fn count(scene: &ResolvedScene, max_rays: u64) -> caustica::reference::ReferenceMap {
-    let settings = ReferenceSettings {
-        target_error: None,
-        max_rays,
-        initial_rays: 1,
-    };
-    irradiance_map(scene, &settings, &|_| ()).unwrap()
 }
 
 fn error(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {

@@ -23,7 +23,8 @@ fn every_serialised_field_of_quality_and_output_is_there_once() {
     let map = json!({ "output": {
         "kind": "irradiance_map", "receiver": "floor", "min_m": [0, 0], "max_m": [1, 1], "width": 1, "height": 1, "light": 0
     } });
-    let wishes = json!({ "quality": { "target_error": 0.1, "time_budget_ms": 10 } });
+    let wishes =
+        json!({ "quality": { "method": "any", "target_error": 0.1, "time_budget_ms": 10 } });
     let view = Scene::from_value(wishes).unwrap();
     let map = Scene::from_value(map).unwrap();
     let mut pointers = Vec::new();
@@ -133,6 +134,51 @@ fn the_kind_is_put_in_first() {
 }
 
 #[test]
+fn a_dial_joins_the_method_that_stands_there() {
+    let cases = [
+        (json!({}), vec![("n", "3")], json!({ "n": 3 })),
+        (json!("a"), vec![("n", "3")], json!({ "kind": "a", "n": 3 })),
+        (
+            json!({ "kind": "a", "m": 1 }),
+            vec![("n", "x")],
+            json!({ "kind": "a", "m": 1, "n": "x" }),
+        ),
+        // The method first, whatever the order; it keeps no dials of another one, and all of its own.
+        (
+            json!({ "kind": "a", "m": 1 }),
+            vec![("n", "2"), ("", "b")],
+            json!({ "kind": "b", "n": 2 }),
+        ),
+        (json!({ "kind": "a", "m": 1 }), vec![("", "b")], json!("b")),
+        (
+            json!({ "kind": "a", "m": 1 }),
+            vec![("", "a")],
+            json!({ "kind": "a", "m": 1 }),
+        ),
+        (json!(null), vec![("n", "3")], json!({ "n": 3 })),
+        // For the reading to refuse.
+        (json!(7), vec![("n", "3")], json!(7)),
+    ];
+    for (start, changes, expected) in cases {
+        let mut scene = json!({ "quality": { "method": start.clone() } });
+        let changes: Vec<(String, String)> = changes
+            .into_iter()
+            .map(|(name, text)| match name {
+                "" => ("/quality/method".to_owned(), text.to_owned()),
+                name => (format!("/quality/method/{name}"), text.to_owned()),
+            })
+            .collect();
+        apply(&mut scene, &changes);
+        assert_eq!(
+            scene["quality"]["method"], expected,
+            "{start} with {changes:?}"
+        );
+    }
+    let nothing = overridden(json!({}), &[("/quality/method/n", "3")]);
+    assert_eq!(nothing["quality"]["method"], json!({ "n": 3 }));
+}
+
+#[test]
 fn bad_values_are_refused_by_the_reading() {
     for (pointer, text) in [
         ("/output/width", "wide"),
@@ -142,7 +188,7 @@ fn bad_values_are_refused_by_the_reading() {
         ("/output/width", "nan"),
         ("/output/width", "inf"),
         ("/output/format", "jpg"),
-        ("/quality/method", "magic"),
+        ("/quality/method", "3"),
         ("/output/receiver", "floor"),
     ] {
         let out = overridden(json!({}), &[(pointer, text)]);

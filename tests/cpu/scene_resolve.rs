@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use caustica::config::Limits;
 use caustica::mesh::{Material, Mesh};
-use caustica::scene::{IssueKind, ResolvedScene, Scene, SceneError, resolve};
+use caustica::scene::{IssueKind, ResolvedScene, Scene, SceneError};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
@@ -28,7 +28,7 @@ fn mesh(id: &str) -> Arc<Mesh> {
 
 fn resolved(value: Value) -> Result<ResolvedScene, SceneError> {
     let scene = Scene::from_value(value).unwrap();
-    resolve(scene, &Limits::default(), |id| {
+    caustica::methods::resolve(scene, &Limits::default(), |id| {
         id.starts_with("blake3:0").then(|| mesh(id))
     })
 }

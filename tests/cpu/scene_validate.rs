@@ -20,7 +20,7 @@ pub(crate) fn full() -> Value {
             "mesh": "blake3:00", "translation_m": [0, -1, 0], "rotation": [0, 0, 0, 1], "scale": 0.5, "albedo": [1, 0, 0.5]
         }],
         "camera": { "position_m": [0, 2.5, 4], "target_m": [0, -1.5, 0], "up": [0, 1, 0], "vertical_fov_deg": 45 },
-        "quality": { "water_cells": 256, "map_texels": 512, "level_map_texels": 256, "split_levels": 2, "planes": 51, "pixel_samples": 1 },
+        "quality": { "water_cells": 256, "map_texels": 512, "level_map_texels": 256, "split_levels": 2, "pixel_samples": 1 },
         "output": {
             "kind": "view", "width": 960, "height": 540, "png_bits": 8, "exposure_ev": 0.0, "layers": ["radiance"]
         },
@@ -424,7 +424,7 @@ fn limits_are_said_with_numbers() {
 fn dials_are_not_chosen_for_planes() {
     for (wish, value) in [("target_error", json!(0.01)), ("time_budget_ms", json!(50))] {
         for way in [
-            json!({ "placement": "planes" }),
+            json!({ "method": "planes" }),
             json!({ "method": "volumetric" }),
         ] {
             let mut scene = map_scene(json!({ "receiver": 0 }));
@@ -433,7 +433,7 @@ fn dials_are_not_chosen_for_planes() {
             scene["quality"][wish] = value.clone();
             let found = findings(&scene);
             assert_eq!(found.len(), 1, "{found:?}");
-            assert_eq!(found[0].pointer, "/quality/placement");
+            assert_eq!(found[0].pointer, "/quality/method");
         }
     }
 }

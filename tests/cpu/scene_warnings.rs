@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use caustica::config::Limits;
 use caustica::physics::fresnel::fresnel_transmittance;
 use caustica::physics::solid_angle::solid_angle;
-use caustica::scene::{Scene, resolve};
+use caustica::scene::Scene;
 use caustica::stats::Warning;
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -64,7 +64,7 @@ fn warnings_of(mut scene: Value, objects: &[(&str, Value)]) -> Vec<Warning> {
     scene["objects"] = json!(placed);
     let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
     let resolved = Scene::from_value(scene)
-        .and_then(|scene| resolve(scene, &Limits::default(), find))
+        .and_then(|scene| caustica::methods::resolve(scene, &Limits::default(), find))
         .unwrap();
     caustica::methods::facts_with_warnings(&resolved)
         .unwrap()
@@ -176,7 +176,7 @@ fn what_stays_below_the_crests_is_told_where_it_takes_light() {
 
 #[test]
 fn planes_tell_what_objects_stop_twice() {
-    let planes = json!({ "placement": "planes" });
+    let planes = json!({ "method": "planes" });
     let two = |x: f64| {
         let objects = [
             (PLATE, json!({ "translation_m": [0, -0.5, 0] })),

@@ -4,8 +4,10 @@ use caustica::facts::{MOST_LIGHTS, SceneFacts};
 use caustica::gpu::shader::Module;
 use caustica::graph::{BandRun, BeamSetRun, Scope};
 use caustica::methods::planes::depth_profile;
+use caustica::methods::reference_planes::MOST_PLANES;
 use caustica::methods::{self, Method};
 use caustica::scene::ranges::{self, Integer as _};
+use caustica::scene::{DialKind, MethodChoice};
 use caustica::stages::camera_hits::MARCH_UNFINISHED;
 use caustica::stages::level_map::LevelMapRun;
 use caustica::stages::maps::{self, MapLayout};
@@ -110,7 +112,7 @@ fn figures_of_queues_and_maps_agree() {
     agrees("TILE", f64::from(reference_planes::PLANE_TILE_TEXELS));
     agrees("WIDE_GROUPS", f64::from(queues::WIDE_GROUPS));
     agrees("MOST_CULL_GROUPS", f64::from(queues::MOST_GROUPS));
-    agrees("MOST_PLANES", f64::from(ranges::Planes::MAX));
+    agrees("MOST_PLANES", f64::from(MOST_PLANES));
     let profile = module("methods/planes/depth_profile.wgsl");
     let each = constant(&profile, "TEXELS_EACH").unwrap() as u32;
     let side = size(&profile, "profile_count")[0];
@@ -181,15 +183,23 @@ fn facts() -> SceneFacts {
     facts_with(methods::ALL[0])
 }
 
-/// The same scene with any method.
+/// The same scene with any method, its dials off their defaults.
 fn facts_with(method: &Method) -> SceneFacts {
+    let mut choice = MethodChoice::named(method.name);
+    for dial in method.dials {
+        choice = match dial.kind {
+            DialKind::Integer { least, most, .. } => choice.with(dial, 7_u32.clamp(least, most)),
+            DialKind::Number { least, most, .. } => choice.with(dial, 0.7 * least + 0.3 * most),
+            DialKind::Word { words, .. } => choice.with(dial, words[words.len() - 1].name),
+        };
+    }
     let resolved = scene_files::scene(json!({
         "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 1.1 }] },
         "floor": { "depth_m": 2, "size_m": [9, 7] },
         "lights": [{ "kind": "sun", "elevation_deg": 50, "irradiance_w_m2": [1, 1, 1] }],
         "objects": [{ "mesh": "box.obj", "translation_m": [0, -1, 0] }],
         "camera": { "position_m": [0, 3, 2], "target_m": [0, -1, 0] },
-        "quality": { "water_cells": 131, "map_texels": 333, "level_map_texels": 64, "slicing": "smart", "planes": 7 },
+        "quality": { "water_cells": 131, "map_texels": 333, "level_map_texels": 64, "method": choice },
         "output": { "kind": "view", "width": 101, "height": 67 }
     }));
     let facts = (method.facts)(&resolved.scene.quality);

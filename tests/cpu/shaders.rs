@@ -8,7 +8,7 @@ use caustica::gpu::{GpuError, pieces};
 use caustica::graph::Layout;
 use caustica::methods;
 use caustica::physics::registry;
-use caustica::stages::{Pass, Slot, shaders};
+use caustica::stages::{Pass, Slot};
 use wgpu::naga;
 use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
 
@@ -16,7 +16,7 @@ use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Va
 const BASELINE_STORAGE_BUFFERS: usize = 8;
 /// The module of a file below `shaders/`.
 pub(crate) fn module(path: &str) -> Module {
-    let text = shaders::embedded()
+    let text = methods::embedded()
         .assemble(path)
         .unwrap_or_else(|error| panic!("{error}"));
     Module::parse(path, text).unwrap_or_else(|error| panic!("{error}"))
@@ -29,7 +29,7 @@ fn is_of_a_pass(path: &&str) -> bool {
 
 /// All pass modules by file.
 pub(crate) fn pass_modules() -> Vec<(&'static str, Module)> {
-    let sources = shaders::embedded();
+    let sources = methods::embedded();
     let passes = sources.paths().filter(is_of_a_pass);
     passes.map(|path| (path, module(path))).collect()
 }
@@ -57,7 +57,7 @@ fn every_file_is_embedded_as_it_is() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
     let mut files = BTreeSet::new();
     files_below(&folder, "", &mut files);
-    let sources = shaders::embedded();
+    let sources = methods::embedded();
     let embedded: BTreeSet<String> = sources.paths().map(str::to_owned).collect();
     assert_eq!(embedded, files);
     for path in &files {
@@ -90,7 +90,7 @@ fn every_pass_has_its_shader_and_every_shader_its_pass() {
 
 #[test]
 fn every_file_is_imported_by_some_pass() {
-    let sources = shaders::embedded();
+    let sources = methods::embedded();
     let imports: String = sources
         .paths()
         .filter_map(|path| sources.text(path))
@@ -182,7 +182,7 @@ fn structs_have_the_same_layout_on_both_sides() {
 
 #[test]
 fn every_formula_has_a_twin_and_every_twin_a_formula() {
-    let sources = shaders::embedded();
+    let sources = methods::embedded();
     let mut in_shaders = BTreeSet::new();
     for path in sources.paths().filter(|path| path.starts_with("lib/")) {
         for (_, function) in module(path).ir.functions.iter() {

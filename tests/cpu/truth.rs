@@ -6,16 +6,15 @@ use caustica::physics::fresnel::fresnel_transmittance;
 use caustica::physics::refraction::{direction_to_light, refract_direction};
 use caustica::physics::sky::{sky_irradiance, sky_path_factor};
 use caustica::reference::closed_form::flat_water_irradiance;
-use caustica::reference::{
-    ReferenceError, ReferenceSettings, Truth, TruthKind, TruthSettings, irradiance_map,
-    shadow_edge, truth,
-};
+use caustica::reference::{ReferenceError, Truth, TruthKind, TruthSettings, shadow_edge, truth};
 use caustica::scene::{Light, ResolvedScene, Sun};
 use caustica::waves::Surface;
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
+use crate::reference::count;
 use crate::scene_files::{mesh_of, with_meshes};
+use crate::truths::truth_to as find;
 
 /// A closed box of half sizes `half` around the origin, as OBJ; every face has its own normal.
 pub(crate) fn box_obj(half: Vec3) -> String {
@@ -72,10 +71,6 @@ fn settings(target_error: f64) -> TruthSettings {
         target_error: Some(target_error),
         ..TruthSettings::default()
     }
-}
-
-fn find(scene: &ResolvedScene, target_error: f64) -> Truth {
-    truth(scene, &settings(target_error), &|_| (), &|| false).unwrap()
 }
 
 fn sun(scene: &ResolvedScene, index: usize) -> Sun {
@@ -229,16 +224,7 @@ fn the_map_on_a_box_has_the_light_that_landed_on_it() {
             water(v);
             v["output"] = json!({ "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 32, "height": 32 });
         });
-        let counted = irradiance_map(
-            &on_floor,
-            &ReferenceSettings {
-                target_error: None,
-                max_rays: 2_000_000,
-                initial_rays: 1,
-            },
-            &|_| (),
-        )
-        .unwrap();
+        let counted = count(&on_floor, 2_000_000);
         // Under a sun in the zenith the texels of the map lie level.
         let side = 2.0 * 0.4 * 32.0 / 28.0 / 32.0;
         let total: f64 = map.irradiance.iter().map(|e| e[1]).sum::<f64>() * side * side;

@@ -27,6 +27,8 @@ fn map_area_m2(resolved: &ResolvedScene) -> f64 {
 fn every_scene_closes() {
     for name in scene_files::names() {
         let frame = harness::render(&scene_files::load(&name, &[]));
+        // Only where there is no water no light is followed.
+        assert_eq!(frame.stats.energy.is_empty(), name == "dry", "{name}");
         for account in &frame.stats.energy {
             println!(
                 "{name}: light {} closes to {:.1e}",

@@ -1,44 +1,24 @@
 //! A frame's estimate of its own error, and dials chosen for a wanted error or time, against the float64 reference.
 
-use std::sync::OnceLock;
-
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;
-use caustica::reference::{ReferenceSettings, irradiance_map};
 use serde_json::{Value, json};
 
 use super::harness::{self, Map};
-use super::scene_files;
-
-/// The truth about the sine pool; its own error is a thousandth.
-fn truth() -> &'static [[f64; 3]] {
-    static TRUTH: OnceLock<Vec<[f64; 3]>> = OnceLock::new();
-    TRUTH.get_or_init(|| count("sine_pool", &[], 1e-3))
-}
+use super::{scene_files, sine_pool, truths};
 
 /// The truth about two pools that few cells know little of, good to a hundredth.
-fn rough_truth(name: &str) -> &'static [[f64; 3]] {
-    static STEEP_POOL: OnceLock<Vec<[f64; 3]>> = OnceLock::new();
-    static TEAPOT_FLOOR: OnceLock<Vec<[f64; 3]>> = OnceLock::new();
-    let truth = match name {
-        "steep_pool" => &STEEP_POOL,
-        "teapot_floor" => &TEAPOT_FLOOR,
-        _ => panic!("{name}"),
-    };
-    truth.get_or_init(|| count(name, &[], 1.5e-2))
+fn rough_truth(name: &str) -> Vec<[f64; 3]> {
+    count(name, &[], 1.5e-2)
 }
 
 fn count(name: &str, changes: &[(&str, &str)], target_error: f64) -> Vec<[f64; 3]> {
-    let settings = ReferenceSettings {
-        target_error: Some(target_error),
-        ..ReferenceSettings::default()
-    };
-    let map = irradiance_map(&scene_files::load(name, changes), &settings, &|_| {});
-    map.unwrap().irradiance
+    let scene = scene_files::load(name, changes);
+    truths::floor_map(&scene, &harness::truth_settings(target_error)).irradiance
 }
 
 /// The sine pool with some fields of `quality`.
-fn sine_pool(quality: &[(&str, &str)]) -> Map {
+fn sine_pool_with(quality: &[(&str, &str)]) -> Map {
     let changes: Vec<(String, &str)> = quality
         .iter()
         .map(|(name, value)| (format!("/quality/{name}"), *value))
@@ -48,7 +28,7 @@ fn sine_pool(quality: &[(&str, &str)]) -> Map {
 }
 
 fn error(map: &Map) -> f64 {
-    relative_l1(map.values(), truth().as_flattened()).unwrap()
+    relative_l1(map.values(), sine_pool::truth().irradiance.as_flattened()).unwrap()
 }
 
 fn estimate(map: &Map) -> f64 {
@@ -63,7 +43,7 @@ fn estimate(map: &Map) -> f64 {
 #[test]
 fn the_estimate_is_within_a_factor_of_two() {
     for cells in ["48", "64", "100", "128", "256"] {
-        let map = sine_pool(&[("water_cells", cells), ("estimate_error", "true")]);
+        let map = sine_pool_with(&[("water_cells", cells), ("estimate_error", "true")]);
         let (true_error, estimated) = (error(&map), estimate(&map));
         println!("{cells} cells: {true_error:.2e}, estimated {estimated:.2e}");
         assert!((0.5..=2.0).contains(&(estimated / true_error)), "{cells}");
@@ -100,14 +80,14 @@ fn so_it_is_where_few_cells_stand_beside_many_texels() {
 
 #[test]
 fn it_changes_nothing_else() {
-    let plain = sine_pool(&[("water_cells", "64")]);
-    let judged = sine_pool(&[("water_cells", "64"), ("estimate_error", "true")]);
+    let plain = sine_pool_with(&[("water_cells", "64")]);
+    let judged = sine_pool_with(&[("water_cells", "64"), ("estimate_error", "true")]);
     assert!(plain.stats.accuracy.is_none());
     assert_eq!(plain.values(), judged.values());
     assert_eq!(plain.stats.energy, judged.stats.energy);
     assert_eq!(
         estimate(&judged),
-        estimate(&sine_pool(&[
+        estimate(&sine_pool_with(&[
             ("water_cells", "64"),
             ("estimate_error", "true")
         ]))
@@ -208,7 +188,7 @@ fn in_the_dark_there_is_nothing_to_estimate() {
 fn a_wanted_error_is_kept_and_not_overpaid() {
     // The fewest cells that would do, by doubling and halving between: what a person could find by trying.
     for (target, most_cells) in [("0.05", 91), ("0.02", 181), ("0.01", 256), ("0.003", 512)] {
-        let map = sine_pool(&[("target_error", target)]);
+        let map = sine_pool_with(&[("target_error", target)]);
         let chosen = map.stats.accuracy.as_ref().unwrap().chosen.clone().unwrap();
         let true_error = error(&map);
         println!(
@@ -248,7 +228,7 @@ fn a_wanted_error_that_is_large_is_kept_too() {
 
 #[test]
 fn the_chosen_dials_give_the_same_bytes_when_asked_for_by_name() {
-    let asked = sine_pool(&[("target_error", "0.02")]);
+    let asked = sine_pool_with(&[("target_error", "0.02")]);
     let chosen = asked
         .stats
         .accuracy
@@ -257,7 +237,7 @@ fn the_chosen_dials_give_the_same_bytes_when_asked_for_by_name() {
         .chosen
         .clone()
         .unwrap();
-    let by_name = sine_pool(&[
+    let by_name = sine_pool_with(&[
         ("water_cells", &chosen.water_cells.to_string()),
         ("map_texels", &chosen.map_texels.to_string()),
         ("level_map_texels", &chosen.level_map_texels.to_string()),
@@ -267,7 +247,7 @@ fn the_chosen_dials_give_the_same_bytes_when_asked_for_by_name() {
     assert_ne!(asked.stats.scene_hash, by_name.stats.scene_hash);
     assert_eq!(
         asked.values(),
-        sine_pool(&[("target_error", "0.02")]).values()
+        sine_pool_with(&[("target_error", "0.02")]).values()
     );
 }
 
@@ -294,7 +274,7 @@ fn an_impossible_wish_is_answered_with_the_best_there_is() {
 #[test]
 fn more_time_buys_more_cells_and_a_smaller_predicted_error() {
     let chosen = |budget: &str| {
-        let map = sine_pool(&[("time_budget_ms", budget)]);
+        let map = sine_pool_with(&[("time_budget_ms", budget)]);
         map.stats.accuracy.as_ref().unwrap().chosen.clone().unwrap()
     };
     let (short, long) = (chosen("20"), chosen("400"));
@@ -309,12 +289,12 @@ fn more_time_buys_more_cells_and_a_smaller_predicted_error() {
 
 #[test]
 fn choosing_comes_on_top_of_a_time_budget_and_is_told() {
-    let budget = || sine_pool(&[("time_budget_ms", "100")]).frame.stats;
+    let budget = || sine_pool_with(&[("time_budget_ms", "100")]).frame.stats;
     budget();
     let stats = budget();
     let chosen = stats.accuracy.unwrap().chosen.unwrap();
     let cells = chosen.water_cells.to_string();
-    let by_name = sine_pool(&[("water_cells", &cells)]).frame.stats;
+    let by_name = sine_pool_with(&[("water_cells", &cells)]).frame.stats;
     println!("{:?} {:?}", stats.time_ms, by_name.time_ms);
     // The look is a frame's light with half the cells; plans take microseconds.
     assert!(stats.time_ms.plan > 4.0 * by_name.time_ms.plan);

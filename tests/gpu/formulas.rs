@@ -1,5 +1,6 @@
 //! Every formula in f32 on this adapter against its f64 original; a broken one is found out, and the service refuses to work.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use axum::body::{Body, to_bytes};
@@ -8,9 +9,9 @@ use caustica::config::{Limits, RenderConfig};
 use caustica::gpu::shader::ShaderSources;
 use caustica::gpu_queue::{GpuQueue, QueueSettings, RenderBackend};
 use caustica::http::{AppState, app};
+use caustica::methods;
 use caustica::physics::registry;
 use caustica::render::{Renderer, twin_error};
-use caustica::stages::shaders;
 use serde_json::{Value, json};
 use tower::ServiceExt as _;
 
@@ -47,7 +48,7 @@ fn this_machine_passes_its_self_check() {
 }
 
 /// Ways to break each formula slightly: file, text, replacement.
-const BROKEN: [(&str, &str, &str); 9] = [
+const BROKEN: [(&str, &str, &str); 10] = [
     (
         "lib/fresnel.wgsl",
         "return 0.5 * (r_s * r_s + r_p * r_p);",
@@ -80,18 +81,27 @@ const BROKEN: [(&str, &str, &str); 9] = [
         "return 1.01 * normal_y; }",
     ),
     ("lib/solid_angle.wgsl", "+ 1.99777106478e-1)", "+ 1.998e-1)"),
+    (
+        "lib/slicing.wgsl",
+        "(index / (planes - 1.0))",
+        "(index / (planes - 0.999))",
+    ),
     ("lib/octahedral.wgsl", "abs(v) - 1.0;", "abs(v) - 1.0001;"),
 ];
 
 fn broken(index: usize) -> ShaderSources {
     let (file, from, to) = BROKEN[index];
-    shaders::embedded()
+    methods::embedded()
         .with_replacement(file, from, to)
         .unwrap_or_else(|| panic!("`{from}` is not in {file}"))
 }
 
 #[test]
 fn every_broken_formula_is_found() {
+    // Every file of formulas is broken once at least.
+    let files: BTreeSet<&str> = registry::all().map(|twin| twin.file).collect();
+    let broken_files: BTreeSet<&str> = BROKEN.iter().map(|(file, ..)| *file).collect();
+    assert_eq!(broken_files, files);
     let renderer = renderer();
     for (index, (file, _, to)) in BROKEN.iter().enumerate() {
         let sources = broken(index);
@@ -111,7 +121,7 @@ fn every_broken_formula_is_found() {
 #[test]
 fn a_formula_that_gives_no_number_is_found() {
     let renderer = renderer();
-    let sources = shaders::embedded()
+    let sources = methods::embedded()
         .with_replacement(
             "lib/attenuation.wgsl",
             "return exp(-c_per_m * length_m);",
@@ -127,7 +137,7 @@ fn a_formula_that_gives_no_number_is_found() {
 
 #[test]
 fn a_replacement_that_is_not_there_is_refused() {
-    let sources = shaders::embedded();
+    let sources = methods::embedded();
     assert!(
         sources
             .clone()

@@ -5,6 +5,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use caustica::config::RenderConfig;
 use caustica::frame::Frame;
+use caustica::reference::ReferenceSettings;
 use caustica::render::{RenderError, Renderer};
 use caustica::scene::{LayerName, ResolvedScene};
 use serde_json::Value;
@@ -91,10 +92,12 @@ impl Map {
         self.texels.iter().map(|t| t[channel]).sum::<f64>() / self.texels.len() as f64
     }
 
-    /// Largest closure of the frame's energy accounts.
+    /// Largest closure of the frame's energy accounts; there has to be one.
     pub(crate) fn closure(&self) -> f64 {
-        let accounts = self.frame.stats.energy.iter();
-        accounts.map(|account| account.closure).fold(0.0, f64::max)
+        let accounts = &self.frame.stats.energy;
+        assert!(!accounts.is_empty(), "the frame has no energy account");
+        let closures = accounts.iter().map(|account| account.closure);
+        closures.fold(0.0, nan_fails)
     }
 }
 
@@ -107,9 +110,18 @@ pub(crate) fn layer(frame: &Frame, name: LayerName) -> Vec<[f64; 3]> {
         .collect()
 }
 
+/// Settings of a reference map of the floor, to a relative error.
+pub(crate) fn truth_settings(target_error: f64) -> ReferenceSettings {
+    ReferenceSettings {
+        target_error: Some(target_error),
+        ..ReferenceSettings::default()
+    }
+}
+
 /// Largest |a − b| / |b| over two lists.
 pub(crate) fn largest_relative(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
+    assert!(!a.is_empty(), "there is nothing to compare");
     let errors = a.iter().zip(b).map(|(a, b)| ((a - b) / b).abs());
     errors.fold(0.0, nan_fails)
 }
@@ -117,6 +129,7 @@ pub(crate) fn largest_relative(a: &[f64], b: &[f64]) -> f64 {
 /// Largest |a − b| as a share of the mean of b.
 pub(crate) fn largest_to_mean(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
+    assert!(!a.is_empty(), "there is nothing to compare");
     let mean = b.iter().sum::<f64>() / b.len() as f64;
     let errors = a.iter().zip(b).map(|(a, b)| ((a - b) / mean).abs());
     errors.fold(0.0, nan_fails)

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::mesh::Mesh;
-use caustica::reference::{Truth, TruthSettings, truth};
-use caustica::scene::{LayerName, ResolvedScene};
+use caustica::reference::Truth;
+use caustica::scene::LayerName;
 use serde_json::{Value, json};
 
 use super::harness::{self, Map};
 use super::scene_files;
+use super::truths::truth_to as truth_of;
 
 /// Water cells, each twice the one before.
 const CELLS: [u32; 4] = [8, 16, 32, 64];
@@ -17,14 +18,6 @@ const CELLS: [u32; 4] = [8, 16, 32, 64];
 const SIZE: [usize; 2] = [24, 18];
 /// Pixels of the renderer for each of those along both: the truth is the mean over a pixel, a picture is what its middle shows.
 const FINER: usize = 4;
-
-fn truth_of(scene: &ResolvedScene, error: f64) -> Truth {
-    let settings = TruthSettings {
-        target_error: Some(error),
-        ..TruthSettings::default()
-    };
-    truth(scene, &settings, &|_| {}, &|| false).unwrap()
-}
 
 /// A pool under waves with these lamps.
 fn pool(lamps: &[[f64; 3]], cells: u32) -> Value {

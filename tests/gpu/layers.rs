@@ -180,6 +180,7 @@ fn layers_are_planned_for_to_the_byte() {
         let memory = &frame.stats.memory;
         println!("{layers} layers: {} bytes", memory.peak_bytes);
         assert_eq!(memory.planned_peak_bytes, memory.peak_bytes, "{layers}");
-        assert_eq!(frame.stats.energy[0].closure.max(1e-5), 1e-5);
+        let closure = frame.stats.energy[0].closure;
+        assert!(closure <= 1e-5, "{closure:e}");
     }
 }

@@ -8,9 +8,9 @@ use caustica::cache::{WarmSun, WarmUp};
 use caustica::config::RenderConfig;
 use caustica::frame::Frame;
 use caustica::mesh::Mesh;
+use caustica::methods;
 use caustica::render::{RenderError, Renderer};
 use caustica::scene::ResolvedScene;
-use caustica::stages::shaders;
 use caustica::stats::CacheStats;
 use serde_json::{Value, json};
 use tokio_util::sync::CancellationToken;
@@ -457,7 +457,7 @@ fn a_frame_that_is_cancelled_leaves_whole_maps_or_none() {
 #[test]
 fn a_frame_that_fails_leaves_no_map_behind() {
     // The level map is built, and then a pass behind it cannot be.
-    let broken = shaders::embedded()
+    let broken = methods::embedded()
         .with_replacement("stages/irradiance.wgsl", "fn ", "fn fn ")
         .unwrap();
     let mut own = Renderer::with_shaders(&RenderConfig::default(), broken).unwrap();

@@ -202,6 +202,10 @@ impl RenderBackend for Breakable {
         self.renderer.adapter()
     }
 
+    fn dial_basis(&self) -> String {
+        self.renderer.dial_basis()
+    }
+
     fn plan(
         &mut self,
         prepared: &Prepared,

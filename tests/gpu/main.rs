@@ -8,6 +8,7 @@
 
 mod accuracy_program;
 mod accuracy_service;
+mod chosen_dials;
 mod conformance;
 mod determinism;
 mod energy;
@@ -27,6 +28,7 @@ mod harness;
 mod instances;
 #[path = "../support/instances.rs"]
 mod instances_scene;
+mod kernels;
 mod lamp_truths;
 mod lamps;
 mod layers;
@@ -46,5 +48,7 @@ mod splitting;
 mod study;
 mod symmetry;
 mod tiles;
+#[path = "../support/truths.rs"]
+mod truths;
 mod view;
 mod wide_sums;

@@ -61,7 +61,7 @@ fn on_object(name: &str, quality: Value) -> Map {
 }
 
 fn planes(count: u32, slicing: &str) -> Value {
-    json!({ "placement": "planes", "planes": count, "slicing": slicing })
+    json!({ "method": { "kind": "planes", "planes": count, "slicing": slicing } })
 }
 
 fn warns(map: &Map, code: &str) -> bool {
@@ -114,7 +114,10 @@ fn many_planes_come_to_what_hits_give() {
 fn a_slice_image_for_each_plane_gives_the_same_picture() {
     for (name, count) in [("sphere", 33), ("teapot", 50), ("torus_knot", 20)] {
         let uniform = on_object(name, planes(count, "uniform"));
-        let volumetric = on_object(name, json!({ "method": "volumetric", "planes": count }));
+        let volumetric = on_object(
+            name,
+            json!({ "method": { "kind": "volumetric", "planes": count } }),
+        );
         let differing = uniform
             .texels
             .iter()
@@ -173,7 +176,7 @@ fn the_floor_gets_nearly_the_same_shadow() {
     for quality in [
         planes(101, "uniform"),
         planes(101, "smart"),
-        json!({ "method": "volumetric", "planes": 101 }),
+        json!({ "method": { "kind": "volumetric", "planes": 101 } }),
     ] {
         let placed = map(quality);
         let error = relative_l1(placed.values(), hit.values()).unwrap();
@@ -215,7 +218,7 @@ fn wide_footprints_light_the_same_texels() {
     // Eight cells over the object: on the finer map every footprint is wide and shared out over lanes, on the coarser none is.
     for quality in [
         planes(33, "smart"),
-        json!({ "method": "volumetric", "planes": 33 }),
+        json!({ "method": { "kind": "volumetric", "planes": 33 } }),
     ] {
         let landed_w = |texels: u32| {
             let mut quality = quality.clone();
@@ -238,7 +241,7 @@ fn slices_over_budget_are_refused_with_numbers() {
     let mut renderer = new_renderer(&config);
     let output = json!({ "kind": "irradiance_map", "receiver": 0 });
     let scene = |planes: u32| {
-        let quality = json!({ "method": "volumetric", "planes": planes, "level_map_texels": 256 });
+        let quality = json!({ "method": { "kind": "volumetric", "planes": planes }, "level_map_texels": 256 });
         under_waves("sphere", quality, output.clone())
     };
     // Once for the level map, which is no slice.
@@ -350,7 +353,7 @@ fn lamps_above_and_under_water_light_by_planes_too() {
         for count in [5, 17, 65] {
             let uniform = map(planes(count, "uniform"));
             let smart = map(planes(count, "smart"));
-            let volumetric = map(json!({ "method": "volumetric", "planes": count }));
+            let volumetric = map(json!({ "method": { "kind": "volumetric", "planes": count } }));
             let distance_m = 2.0 * RADIUS_M / f64::from(count - 1);
             // Half a distance nearer or farther: the inverse square, and light that is aside by the tilt. Besides the stair.
             let bound = tilt + 0.5 * distance_m * (2.0 / seen_from_m + tilt / FEATURE_M);

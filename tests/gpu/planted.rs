@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;
+use caustica::methods;
 use caustica::reference::{ReferenceSettings, irradiance_map};
 use caustica::render::Renderer;
-use caustica::stages::shaders;
 use serde_json::json;
 
 use super::harness::Map;
@@ -51,7 +51,7 @@ fn error(sources: caustica::gpu::shader::ShaderSources) -> f64 {
 
 #[test]
 fn the_shaders_as_they_are_pass() {
-    let error = error(shaders::embedded());
+    let error = error(methods::embedded());
     println!("as it is: {error:.2e}");
     assert!(error < 1.2e-2, "{error}");
 }
@@ -86,7 +86,7 @@ fn a_wrong_sign_in_any_of_them_is_caught() {
         ),
     ];
     for (file, from, to) in plants {
-        let planted = shaders::embedded().with_replacement(file, from, to);
+        let planted = methods::embedded().with_replacement(file, from, to);
         let planted = planted.unwrap_or_else(|| panic!("{file} no longer says `{from}`"));
         let error = error(planted);
         println!("{file}: {error:.2e}");

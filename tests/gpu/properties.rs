@@ -8,7 +8,7 @@ use caustica::config::Limits;
 use caustica::frame::Frame;
 use caustica::mesh::Mesh;
 use caustica::render::Renderer;
-use caustica::scene::{ResolvedScene, Scene, resolve};
+use caustica::scene::{ResolvedScene, Scene};
 use caustica::stats::Warning;
 use serde_json::{Value, json};
 
@@ -139,13 +139,13 @@ fn scene(random: &mut Random) -> Value {
         "water_cells": 2 + random.below(95), "map_texels": 16 + random.below(100), "level_map_texels": random.of(&[16, 32, 64]),
         "split_levels": random.below(4), "layers": 1 + random.below(2), "estimate_error": random.one_in(4)
     });
-    match random.below(6) {
-        0 => quality["placement"] = json!("planes"),
-        1 => quality["method"] = json!("volumetric"),
-        _ => {}
-    }
-    if quality.get("placement").or(quality.get("method")).is_some() {
-        quality["planes"] = json!(2 + random.below(14));
+    let kind = match random.below(6) {
+        0 => Some("planes"),
+        1 => Some("volumetric"),
+        _ => None,
+    };
+    if let Some(kind) = kind {
+        quality["method"] = json!({ "kind": kind, "planes": 2 + random.below(14) });
         quality["layers"] = json!(1);
     }
     let side = size_m * random.magnitude(0.05, 2.0);
@@ -218,8 +218,8 @@ fn resolved(mut value: Value, store: &MeshStore) -> Option<ResolvedScene> {
         meshes.push(mesh);
     }
     let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
-    let resolved =
-        Scene::from_value(value).and_then(|scene| resolve(scene, &Limits::default(), find));
+    let resolved = Scene::from_value(value)
+        .and_then(|scene| caustica::methods::resolve(scene, &Limits::default(), find));
     match resolved {
         Ok(resolved) => Some(resolved),
         Err(error) => {
@@ -272,8 +272,7 @@ fn check(renderer: &mut Renderer, store: &MeshStore, value: &Value, again: bool)
     for (name, layer) in &frame.layers {
         assert!(layer.data.iter().all(|v| v.is_finite()), "{name:?}");
     }
-    let quality = &value["quality"];
-    let by_planes = quality["placement"] == "planes" || quality["method"] == "volumetric";
+    let by_planes = value["quality"].get("method").is_some();
     let mut worst = 0.0;
     for account in frame.stats.energy.iter().filter(|_| !by_planes) {
         worst = f64::max(worst, account.closure);

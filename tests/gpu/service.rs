@@ -197,6 +197,7 @@ async fn the_same_scene_gives_the_same_picture_from_the_cache() {
         let memory = &stats["memory"];
         let (planned, peak) = (&memory["planned_peak_bytes"], &memory["peak_bytes"]);
         println!("planned {planned}, held {peak}");
+        assert!(peak.as_u64().unwrap() <= planned.as_u64().unwrap());
         assert!(!stats["adapter"]["name"].as_str().unwrap().is_empty());
         assert!(stats["time_ms"]["gpu"].as_f64().unwrap() > 0.0);
     }

@@ -1,32 +1,24 @@
 //! The sine pool against the float64 reference: the error at each number of cells, and how fast it falls.
 
-use std::sync::OnceLock;
-
 use caustica::accuracy::{convergence_order, metrics};
-use caustica::reference::{self, ReferenceMap, ReferenceSettings};
+use caustica::reference::ReferenceMap;
 
-use super::harness::Map;
+use super::harness::{Map, truth_settings};
 use super::scene_files;
+use super::truths;
 
 /// Error of the truth itself: well below what is judged by it.
 const TRUTH_ERROR: f64 = 5e-4;
 
-pub(crate) fn truth() -> &'static ReferenceMap {
-    static TRUTH: OnceLock<ReferenceMap> = OnceLock::new();
-    TRUTH.get_or_init(|| {
-        let settings = ReferenceSettings {
-            target_error: Some(TRUTH_ERROR),
-            ..ReferenceSettings::default()
-        };
-        let scene = scene_files::load("sine_pool", &[]);
-        let truth = reference::irradiance_map(&scene, &settings, &|_| {}).unwrap();
-        println!(
-            "truth: {:.1e} with {} rays",
-            truth.relative_error, truth.rays
-        );
-        assert!(truth.relative_error <= 2e-3);
-        truth
-    })
+pub(crate) fn truth() -> ReferenceMap {
+    let scene = scene_files::load("sine_pool", &[]);
+    let truth = truths::floor_map(&scene, &truth_settings(TRUTH_ERROR));
+    println!(
+        "truth: {:.1e} with {} rays",
+        truth.relative_error, truth.rays
+    );
+    assert!(truth.relative_error <= 2e-3);
+    truth
 }
 
 fn error_at(cells: u32) -> f64 {
@@ -54,7 +46,8 @@ fn error_falls_with_the_square_of_the_cells() {
 #[test]
 fn the_comparison_rejects_wrong_maps() {
     let map = Map::from(&scene_files::load("sine_pool", &[]));
-    let truth = truth().irradiance.as_flattened();
+    let truth = truth();
+    let truth = truth.irradiance.as_flattened();
     let width = map.width as usize;
     let mirrored: Vec<f64> = map
         .texels

@@ -5,12 +5,13 @@ use caustica::lab::study::dial::Dial;
 use caustica::lab::study::report::write_study;
 use caustica::lab::study::study::{Study, StudyImages};
 use caustica::lab::study::sweep::{Refusal, StudyError, SweepSettings, run_study};
-use caustica::reference::{Truth, TruthSettings, truth};
+use caustica::reference::Truth;
 use caustica::render::{RenderError, Renderer};
 use caustica::scene::ResolvedScene;
 use serde_json::json;
 use tokio_util::sync::CancellationToken;
 
+use super::truths::truth_to;
 use super::{harness, scene_files};
 
 fn small_sine_pool() -> ResolvedScene {
@@ -20,12 +21,9 @@ fn small_sine_pool() -> ResolvedScene {
     )
 }
 
-fn truth_of(scene: &ResolvedScene, error: f64) -> Truth {
-    let settings = TruthSettings {
-        target_error: Some(error),
-        ..TruthSettings::default()
-    };
-    truth(scene, &settings, &|_| {}, &|| false).unwrap()
+/// The truth about it, well below what is judged by it.
+fn small_truth() -> Truth {
+    truth_to(&small_sine_pool(), 1e-3)
 }
 
 fn study(
@@ -64,7 +62,7 @@ fn study(
 #[test]
 fn cells_converge_at_second_order_and_cost_more() {
     let scene = small_sine_pool();
-    let truth = truth_of(&scene, 1e-3);
+    let truth = small_truth();
     let (study, images) = study(
         &mut harness::renderer(),
         &scene,
@@ -119,7 +117,7 @@ fn cells_converge_at_second_order_and_cost_more() {
 #[test]
 fn a_grid_has_every_combination() {
     let scene = small_sine_pool();
-    let truth = truth_of(&scene, 1e-2);
+    let truth = small_truth();
     let dials = ["water_cells=32,64", "split_levels=0,1,2"];
     let (study, _) = study(&mut harness::renderer(), &scene, &truth, &dials, true).unwrap();
     assert_eq!(study.sweeps.len(), 1);
@@ -138,7 +136,7 @@ fn a_grid_has_every_combination() {
 #[test]
 fn bad_and_too_many_settings_are_refused_before_any_time_is_spent() {
     let scene = small_sine_pool();
-    let truth = truth_of(&scene, 5e-2);
+    let truth = small_truth();
     let renderer = &mut harness::renderer();
     let error = study(renderer, &scene, &truth, &["water_cells=64,1"], false).unwrap_err();
     let StudyError::Scene(error) = error else {
@@ -156,7 +154,7 @@ fn bad_and_too_many_settings_are_refused_before_any_time_is_spent() {
 #[test]
 fn a_setting_that_does_not_fit_is_left_out_and_said() {
     let scene = small_sine_pool();
-    let truth = truth_of(&scene, 5e-2);
+    let truth = small_truth();
     let config = RenderConfig {
         memory_budget_mib: 3,
         ..RenderConfig::default()
@@ -191,7 +189,7 @@ fn a_view_is_compared_at_its_pixels() {
             ("/quality/level_map_texels", "256"),
         ],
     );
-    let truth = truth_of(&scene, 2e-2);
+    let truth = truth_to(&scene, 2e-2);
     let (study, _) = study(
         &mut harness::renderer(),
         &scene,
@@ -238,7 +236,7 @@ fn meshes_and_tilted_receivers_agree_with_the_reference() {
     });
     value["output"] = output;
     let scene = scene_files::scene(value);
-    let truth = truth_of(&scene, 5e-3);
+    let truth = truth_to(&scene, 5e-3);
     let (found, _) = study(
         &mut harness::renderer(),
         &scene,

@@ -116,7 +116,7 @@ fn what_is_recorded_ahead_of_a_look_at_the_sums_gives_the_same() {
     view["camera"] = json!({ "position_m": [0, 2, 2], "target_m": [0, -1.5, 0] });
     view["output"] = json!({ "kind": "view", "width": 64, "height": 36, "format": "exr", "layers": ["irradiance", "radiance"] });
     let mut planes = view.clone();
-    planes["quality"]["placement"] = json!("planes");
+    planes["quality"]["method"] = json!("planes");
     // Fine sums wrap in the first two, coarse ones too in the second; the third is cut into pieces.
     let scenes = [
         focus(512, 512),

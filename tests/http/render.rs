@@ -2,18 +2,16 @@
 
 use axum::http::Request;
 use base64::Engine as _;
+use caustica::gpu::GpuError;
 use caustica::http::routes::render::RenderAnswer;
 use caustica::image::{decode_exr, decode_png};
-use serde_json::json;
+use caustica::render::RenderError;
+use serde_json::{Value, json};
 
 use super::support::service::post;
-use super::support::{Reply, Service, scenes};
+use super::support::{Behaviour, Reply, Service, scenes};
 
-async fn render_with(
-    service: &Service,
-    header: (&'static str, &str),
-    scene: &serde_json::Value,
-) -> Reply {
+async fn render_with(service: &Service, header: (&'static str, &str), scene: &Value) -> Reply {
     let mut request: Request<_> = post("/v1/render", "application/json", scene.to_string());
     request
         .headers_mut()
@@ -182,6 +180,49 @@ async fn an_entity_tag_is_of_one_scene_and_one_form() {
     for listed in ["*", "\"\"", tag.trim_matches('"')] {
         let reply = render_with(&service, ("if-none-match", listed), &scenes::small()).await;
         assert_eq!(reply.status, 200, "{listed}");
+    }
+}
+
+#[tokio::test]
+async fn an_entity_tag_knows_what_dials_are_chosen_by_where_they_are_chosen() {
+    let quality = |quality: Value| {
+        let mut scene = scenes::small();
+        scene["quality"] = quality;
+        scene
+    };
+    let own = [scenes::small(), quality(json!({ "water_cells": 64 }))];
+    let chosen = [
+        quality(json!({ "target_error": 0.02 })),
+        quality(json!({ "time_budget_ms": 50 })),
+    ];
+    let service = Service::start().await;
+    let mut tags = Vec::new();
+    for scene in own.iter().chain(&chosen) {
+        let reply = service.post_json("/v1/render", scene).await;
+        assert_eq!(reply.status, 200, "{}", reply.text());
+        tags.push(reply.header("etag").to_owned());
+    }
+    let status_of = async |index: usize| {
+        let scene = own.iter().chain(&chosen).nth(index).unwrap();
+        let header = ("if-none-match", tags[index].as_str());
+        let reply = render_with(&service, header, scene).await;
+        assert_eq!(reply.header("etag") == tags[index], reply.status == 304);
+        reply.status
+    };
+    for index in 0..4 {
+        assert_eq!(status_of(index).await, 304, "{index}");
+    }
+
+    // The next device comes with another calibration, or less memory.
+    service.control.choose_dials_by("another calibration");
+    let lost = GpuError::DeviceLost("unplugged".to_owned());
+    service
+        .control
+        .script([Behaviour::Fail(RenderError::Gpu(lost))]);
+    service.assert_whole().await;
+    assert_eq!(service.state.queue().status().losses, 1);
+    for (index, expected) in [304, 304, 200, 200].into_iter().enumerate() {
+        assert_eq!(status_of(index).await, expected, "{index}");
     }
 }
 

@@ -8,7 +8,7 @@ use caustica::cli::scene_file;
 use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
 use caustica::config::Limits;
 use caustica::mesh::Mesh;
-use caustica::scene::{ResolvedScene, Scene, resolve};
+use caustica::scene::{ResolvedScene, Scene};
 use serde_json::Value;
 
 /// The folder of the scenes.
@@ -78,5 +78,6 @@ pub(crate) fn scene(mut value: Value) -> ResolvedScene {
 pub(crate) fn with_meshes(value: Value, meshes: &[Arc<Mesh>]) -> ResolvedScene {
     let scene = Scene::from_value(value).unwrap_or_else(|error| panic!("{error}"));
     let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
-    resolve(scene, &Limits::default(), find).unwrap_or_else(|error| panic!("{error}"))
+    caustica::methods::resolve(scene, &Limits::default(), find)
+        .unwrap_or_else(|error| panic!("{error}"))
 }

@@ -31,10 +31,11 @@ use crate::lab::study::plot::{convergence, error_against_time};
 use crate::lab::study::report::{self, ReportLinks};
 use crate::lab::study::study::{Study, StudyImages};
 use crate::lab::study::sweep::{self, Refusal, StudyError, SweepSettings, run_study};
+use crate::methods;
 use crate::reference::{ReferenceError, TruthSettings, truth};
 use crate::render::{Prepared, RenderError};
 use crate::scene::parse::{from_value, read_json};
-use crate::scene::{Issue, ResolvedScene, Scene, SceneError, resolve};
+use crate::scene::{Issue, ResolvedScene, Scene, SceneError};
 
 /// What can be answered, best first on a draw.
 const OFFERED: [&str; 5] = [
@@ -55,7 +56,7 @@ const FULL_QUEUE_PAUSE: Duration = Duration::from_millis(20);
 pub struct AccuracyRequest {
     /// The scene; its `quality` holds the dials that are not swept.
     pub scene: Scene,
-    /// Fields of `quality` with the values each takes, 1 … 32 per dial. Default: those that matter to the scene.
+    /// Fields of `quality`, and dials of the methods, with the values each takes, 1 … 32 per dial. Default: those that matter to the scene.
     #[serde(default)]
     #[schema(value_type = BTreeMap<String, Vec<Object>>)]
     pub dials: BTreeMap<String, Vec<Value>>,
@@ -182,11 +183,12 @@ fn read(body: &Bytes, state: &AppState) -> Result<(ResolvedScene, SweepSettings,
             Err(error) => issues.push(Issue::invalid(
                 format!("/dials/{name}"),
                 error.to_string(),
-                "fields of `quality`, each with 1 … 32 values",
+                "fields of `quality` and dials of methods, each with 1 … 32 values",
             )),
         }
     }
-    let resolved = resolve(request.scene, state.limits(), |id| state.meshes().get(id));
+    let find = |id: &str| state.meshes().get(id);
+    let resolved = methods::resolve(request.scene, state.limits(), find);
     match resolved {
         Ok(resolved) if issues.is_empty() => {
             if dials.is_empty() {

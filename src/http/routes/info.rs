@@ -10,7 +10,8 @@ use utoipa::ToSchema;
 use super::super::problem::CommonProblems;
 use super::super::state::AppState;
 use crate::config::Limits;
-use crate::scene::{Dispersion, ExrPixel, ImageFormat, LayerName, Method, Placement, ToneCurve};
+use crate::methods;
+use crate::scene::{Dispersion, ExrPixel, ImageFormat, LayerName, MethodChoice, ToneCurve};
 use crate::stats::AdapterStats;
 
 /// What runs here and what it takes.
@@ -65,8 +66,10 @@ fn features() -> BTreeMap<String, Vec<String>> {
         words::<ExrPixel>(),
         words::<ImageFormat>(),
         words::<LayerName>(),
-        words::<Method>(),
-        words::<Placement>(),
+        (
+            MethodChoice::name().into_owned(),
+            methods::ALL.map(|method| method.name.to_owned()).into(),
+        ),
         words::<ToneCurve>(),
     ]
     .into()

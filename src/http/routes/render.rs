@@ -19,9 +19,11 @@ use super::super::observe::Arrival;
 use super::super::problem::RenderProblems;
 use super::super::state::AppState;
 use crate::frame::Frame;
+use crate::gpu_queue::GpuStatus;
 use crate::image::{Encoded, Metadata, encode};
 use crate::scene::{Encoding, Scene};
 use crate::stats::{AdapterStats, Stats};
+use crate::tuning::chooses_dials;
 
 /// Header with the hash of the canonical scene.
 pub const SCENE_HASH: HeaderName = HeaderName::from_static("x-caustica-scene-hash");
@@ -67,7 +69,7 @@ pub struct InlineImage {
         (
             status = OK, description = "The picture.",
             headers(
-                ("etag", description = "Hash of the canonical scene, the program's version and the adapter; images only."),
+                ("etag", description = "Hash of the canonical scene, the program's version and the adapter, and, where `quality` asks for an error or a time, of what the dials are chosen by (calibration, memory and level-map budget); images only."),
                 ("server-timing", description = "ms: queue, plan, upload, gpu, readback, encode, total, and `pass-…` for each pass."),
                 ("x-caustica-scene-hash", description = "`blake3:…` of the canonical scene."),
             ),
@@ -89,11 +91,19 @@ pub async fn render(
     let encoding = resolved.scene.output.encoding();
     let representation = choose(&headers, encoding.format)?;
     let scene_hash = resolved.hash();
+    let are_chosen = chooses_dials(&resolved.scene.quality);
+    let tag_on = |adapter: &AdapterStats, status: &GpuStatus| {
+        let basis = are_chosen.then_some(status.dial_basis.as_str());
+        entity_tag(&scene_hash, adapter, basis)
+    };
+    let status = state.queue().status();
     if representation == Representation::Image
-        && let Some(adapter) = state.queue().status().adapter
-        && has_tag(&headers, &entity_tag(&scene_hash, &adapter))
+        && let Some(tag) = status
+            .adapter
+            .as_ref()
+            .map(|adapter| tag_on(adapter, &status))
+        && has_tag(&headers, &tag)
     {
-        let tag = entity_tag(&scene_hash, &adapter);
         let headers = [(header::ETAG, tag), (SCENE_HASH, scene_hash)];
         return Ok((StatusCode::NOT_MODIFIED, headers).into_response());
     }
@@ -107,7 +117,7 @@ pub async fn render(
     let (encoded, stats) = run_blocking(move || encode_frame(frame, &encoding, arrival)).await?;
     state.metrics().rendered(arrival.elapsed());
 
-    let tag = entity_tag(&scene_hash, &stats.adapter);
+    let tag = tag_on(&stats.adapter, &state.queue().status());
     let common = [
         (SERVER_TIMING, server_timing(&stats)),
         (SCENE_HASH, scene_hash),
@@ -155,16 +165,17 @@ fn inline(encoded: &Encoded, stats: Stats) -> RenderAnswer {
     }
 }
 
-/// A strong entity tag: whatever can change the bytes is in it.
-fn entity_tag(scene_hash: &str, adapter: &AdapterStats) -> String {
-    let mut hasher = blake3::Hasher::new();
-    for part in [
+/// A strong entity tag: whatever can change the bytes is in it. `dial_basis` is what the dials are chosen by, where they are.
+fn entity_tag(scene_hash: &str, adapter: &AdapterStats, dial_basis: Option<&str>) -> String {
+    let parts = [
         scene_hash,
         env!("CARGO_PKG_VERSION"),
         &adapter.name,
         &adapter.backend,
         &adapter.driver,
-    ] {
+    ];
+    let mut hasher = blake3::Hasher::new();
+    for part in parts.into_iter().chain(dial_basis) {
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
     }

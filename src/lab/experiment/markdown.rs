@@ -27,9 +27,9 @@ fn head(text: &mut String, e: &Experiment) {
     let _ = write!(
         text,
         "# Level maps: planes, slices and hits\n\n\
-        The experiments of W. Tipprasert's thesis (2006, ch. 5) done again: light is placed on a mesh by slice images (`method: \
-        volumetric`), by reference planes on a level map (`placement: planes`, slicing `uniform` and `smart`), and by where rays \
-        hit (`placement: hit`, the default).\n\n\
+        The experiments of W. Tipprasert's thesis (2006, ch. 5) done again: light is placed on a mesh by slice images (method \
+        `volumetric`), by reference planes on a level map (method `planes`, slicing `uniform` and `smart`), and by where rays hit \
+        (method `level_map`, the default).\n\n\
         On {} ({}), {} cores; {}² water cells, {}² texels, median of {} interleaved runs; times are the GPU's, of whole frames \
         with level maps cached. Errors are relative L1 of the map on the mesh against the float64 reference.\n\n\
         The thesis ran on a GeForce 6800 with all beams on every plane; ours are culled against the mesh's map for all three ways \

@@ -9,18 +9,25 @@ use crate::accuracy::metrics::{MetricError, relative_l1};
 use crate::frame::Frame;
 use crate::lab::study::study::SpreadMs;
 use crate::methods::volumetric::slice_deposit::{SLICE_DEPTH, SLICES};
+use crate::methods::{level_map, planes, volumetric};
 use crate::reference::{ReferenceError, Truth};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::Stats;
 
-/// Passes whose time is a way's own.
-const OWN_PASSES: [&str; 3] = ["depth_profile", "planes", "volumetric"];
 /// Slices, uniform planes, smart planes.
 const WAYS_BY_PLANES: usize = 3;
 /// Water cells that placement by hits is measured with.
 const HIT_CELLS: [u32; 8] = [24, 32, 48, 64, 96, 128, 192, 256];
 /// Split levels that each number of cells is measured with: none, as planes have it, and the default.
 const HIT_SPLIT_LEVELS: [u32; 2] = [0, 2];
+
+/// Whether the time of a pass is a way's own: slices and planes have it, and hits have not.
+fn is_own(pass: &str) -> bool {
+    let mut of_hits = level_map::METHOD.passes.iter();
+    let of_planes = planes::METHOD.passes.iter();
+    let mut of_ways = of_planes.chain(volumetric::METHOD.passes);
+    of_ways.any(|own| own.name == pass) && !of_hits.any(|shared| shared.name == pass)
+}
 
 /// What is measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -265,10 +272,7 @@ impl Measured {
 
     fn figures(&self, truth: Option<&Truth>) -> Result<WayFigures, ExperimentError> {
         let own = |stats: &Stats| -> Option<f64> {
-            let passes = stats
-                .passes
-                .iter()
-                .filter(|p| OWN_PASSES.contains(&p.name.as_str()));
+            let passes = stats.passes.iter().filter(|pass| is_own(&pass.name));
             // Hits have none of them.
             let times: Vec<Option<f64>> = passes.map(|pass| pass.gpu_ms).collect();
             times.first()?;

@@ -7,7 +7,10 @@ use serde_json::json;
 use super::measure::ExperimentError;
 use crate::config::Limits;
 use crate::lab::shapes::Shape;
-use crate::scene::{Method, Placement, ResolvedScene, Scene, Slicing, resolve};
+use crate::methods::planes::{SLICING, SMART};
+use crate::methods::reference_planes::PLANES;
+use crate::methods::{self, Method, level_map, planes, volumetric};
+use crate::scene::{MethodChoice, ResolvedScene, Scene};
 
 /// Largest extent of the shape, m.
 const EXTENT_M: f64 = 0.6;
@@ -49,7 +52,7 @@ pub fn scene(name: &str, water_cells: u32, texels: u32) -> Result<ResolvedScene,
     });
     let refused = |error: crate::scene::SceneError| ExperimentError::Scene(error.to_string());
     let scene = Scene::from_value(value).map_err(refused)?;
-    resolve(scene, &Limits::default(), |id| {
+    methods::resolve(scene, &Limits::default(), |id| {
         (id == mesh.id).then(|| mesh.clone())
     })
     .map_err(refused)
@@ -58,17 +61,15 @@ pub fn scene(name: &str, water_cells: u32, texels: u32) -> Result<ResolvedScene,
 impl Way {
     /// The scene with light placed this way.
     pub fn of(self, scene: &ResolvedScene) -> ResolvedScene {
-        let mut scene = scene.clone();
-        let quality = &mut scene.scene.quality;
-        (quality.method, quality.placement, quality.slicing) = match self {
-            Self::Volumetric(_) => (Method::Volumetric, Placement::Planes, Slicing::Uniform),
-            Self::Uniform(_) => (Method::LevelMap, Placement::Planes, Slicing::Uniform),
-            Self::Smart(_) => (Method::LevelMap, Placement::Planes, Slicing::Smart),
-            Self::Hit => (Method::LevelMap, Placement::Hit, Slicing::Uniform),
+        let slices = |method: &Method, count| MethodChoice::named(method.name).with(&PLANES, count);
+        let choice = match self {
+            Self::Volumetric(count) => slices(&volumetric::METHOD, count),
+            Self::Uniform(count) => slices(&planes::METHOD, count),
+            Self::Smart(count) => slices(&planes::METHOD, count).with(&SLICING, SMART),
+            Self::Hit => MethodChoice::named(level_map::METHOD.name),
         };
-        if let Self::Volumetric(planes) | Self::Uniform(planes) | Self::Smart(planes) = self {
-            quality.planes = planes;
-        }
+        let mut scene = scene.clone();
+        scene.scene.quality.method = methods::shortest(&choice);
         scene
     }
 }

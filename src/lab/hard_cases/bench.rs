@@ -12,8 +12,9 @@ use crate::assets::MeshStore;
 use crate::config::Limits;
 use crate::frame::Frame;
 use crate::mesh::Mesh;
+use crate::methods;
 use crate::render::{RenderError, Renderer};
-use crate::scene::{LayerName, ResolvedScene, Scene, SceneError, resolve};
+use crate::scene::{LayerName, ResolvedScene, Scene, SceneError};
 use crate::stats::{Stats, Warning};
 
 /// Most that an energy account may be open by.
@@ -48,7 +49,7 @@ pub(super) fn resolved(store: &mut MeshStore, mut value: Value) -> Result<Resolv
     }
     let scene = Scene::from_value(value)?;
     let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
-    Ok(resolve(scene, &Limits::default(), find)?)
+    Ok(methods::resolve(scene, &Limits::default(), find)?)
 }
 
 impl<'a> Bench<'a> {

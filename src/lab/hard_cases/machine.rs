@@ -10,12 +10,14 @@ use tokio_util::sync::CancellationToken;
 use super::bench::Bench;
 use super::case::Family::Machine;
 use super::case::{Case, Failure};
+use super::mesh::with_planes;
 use super::sabotage::{Saboteur, after_submissions, differing_values, exhaust};
 use super::truths::{pool, waves, with};
 use crate::config::{AdapterPolicy, RenderConfig};
 use crate::frame::Frame;
 use crate::gpu::GpuError;
 use crate::gpu_queue::{GpuQueue, GpuState, GpuStatus, QueueSettings, RenderBackend};
+use crate::methods;
 use crate::render::{Prepared, RenderError, Renderer};
 use crate::scene::ResolvedScene;
 
@@ -92,7 +94,12 @@ pub(super) const CASES: &[Case] = &[
         0.0,
         |b| {
             let mut differing = 0.0;
-            for scene in [with_box(), by_planes(), by_slices(), view()] {
+            let by_method = methods::variants().into_iter().map(|choice| {
+                // Few planes, as each has dispatches of its own.
+                let choice = with_planes(choice.clone(), 4).unwrap_or(choice);
+                with(with_box(), &[("/quality/method", json!(choice))])
+            });
+            for scene in by_method.chain([view()]) {
                 let few = [
                     ("/quality/water_cells", json!(32)),
                     ("/quality/level_map_texels", json!(32)),
@@ -158,17 +165,6 @@ fn with_box() -> Value {
             ("/quality/estimate_error", json!(true)),
         ],
     )
-}
-
-fn by_planes() -> Value {
-    let quality = json!({ "water_cells": 64, "level_map_texels": 64, "placement": "planes", "planes": 4, "slicing": "smart" });
-    with(with_box(), &[("/quality", quality)])
-}
-
-fn by_slices() -> Value {
-    let quality =
-        json!({ "water_cells": 64, "level_map_texels": 64, "method": "volumetric", "planes": 4 });
-    with(with_box(), &[("/quality", quality)])
 }
 
 fn view() -> Value {

@@ -13,8 +13,10 @@ use super::truths::{
     flat_irradiance, largest_to_mean, pool, reference_error, relative_l1, seen_error, sun, waves,
     with, worst,
 };
+use crate::methods;
+use crate::methods::reference_planes::PLANES;
 use crate::physics::refraction::{direction_to_light, refract_direction};
-use crate::scene::LayerName;
+use crate::scene::{LayerName, MethodChoice, Quality};
 
 const REFERENCE: &str = "relative L1 of the floor against the reference";
 const SAME: &str = "largest difference of the floor from that of the sound mesh, to the mean";
@@ -468,17 +470,12 @@ fn on_a_reference_plane(bench: &mut Bench<'_>) -> Result<f64, Failure> {
     };
     let mut error = 0.0;
     for planes in [5, 4] {
-        for (key, value) in [
-            ("slicing", "uniform"),
-            ("slicing", "smart"),
-            ("method", "volumetric"),
-        ] {
-            let mut quality =
-                json!({ "water_cells": 128, "level_map_texels": side, "planes": planes });
-            quality[key] = json!(value);
-            if key == "slicing" {
-                quality["placement"] = json!("planes");
-            }
+        for choice in methods::variants() {
+            let Some(choice) = with_planes(choice, planes) else {
+                continue;
+            };
+            let method = json!(choice);
+            let quality = json!({ "water_cells": 128, "level_map_texels": side, "method": method });
             let resolved = bench.scene(of(quality))?;
             let truth = flat_irradiance(&resolved, 1.0);
             let frame = bench.render_resolved(&resolved)?;
@@ -488,7 +485,7 @@ fn on_a_reference_plane(bench: &mut Bench<'_>) -> Result<f64, Failure> {
                 .first()
                 .is_none_or(|p| p.specified != planes)
             {
-                return Err(Failure::Check(format!("{value}: no {planes} planes")));
+                return Err(Failure::Check(format!("{method}: no {planes} planes")));
             }
             for (at, found) in texels(&frame, LayerName::Irradiance).iter().enumerate() {
                 // The plate is 60 texels wide; whether those along its edges are drawn is up to the rasteriser.
@@ -503,6 +500,16 @@ fn on_a_reference_plane(bench: &mut Bench<'_>) -> Result<f64, Failure> {
         }
     }
     Ok(error)
+}
+
+/// The same choice with so many planes; `None` where the method has none.
+pub(super) fn with_planes(choice: MethodChoice, planes: u32) -> Option<MethodChoice> {
+    let quality = Quality {
+        method: choice.clone(),
+        ..Quality::default()
+    };
+    let has_planes = methods::of(&quality).dial(PLANES.name).is_some();
+    has_planes.then(|| choice.with(&PLANES, planes))
 }
 
 fn mean(map: &[[f64; 3]]) -> f64 {

@@ -90,6 +90,10 @@ impl RenderBackend for Saboteur {
         self.renderer.adapter()
     }
 
+    fn dial_basis(&self) -> String {
+        self.renderer.dial_basis()
+    }
+
     fn plan(
         &mut self,
         prepared: &Prepared,

@@ -1,8 +1,9 @@
-//! Dials: fields of `quality` with the values that a sweep gives them.
+//! Dials: fields of `quality`, and dials of methods, with the values that a sweep gives them.
 
 use serde_json::Value;
 
 use crate::config::Limits;
+use crate::methods;
 use crate::scene::overrides::{self, Field};
 use crate::scene::{Issue, ResolvedScene, Scene, SceneError};
 
@@ -13,7 +14,7 @@ pub const MOST_VALUES: usize = 32;
 /// Ranges that end at or below this count by one; longer ones double.
 const COUNTED_TO: u64 = 8;
 
-/// A field of `quality` and the values it takes, in order.
+/// A field of `quality`, or a dial of a method, and the values it takes, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dial {
     /// Name of the field.
@@ -51,9 +52,9 @@ pub enum DialError {
     },
 }
 
-/// All dials there are: the fields of `quality`, but for the switch of the estimate.
+/// All dials there are: the fields of `quality`, but for the switch of the estimate, and the dials of all methods.
 pub fn dials() -> Vec<Field> {
-    overrides::fields()
+    methods::fields()
         .into_iter()
         .filter(|field| field.pointer.starts_with("/quality/") && field.name != NO_DIAL)
         .collect()
@@ -150,28 +151,52 @@ fn range(low: &str, high: &str) -> Option<Vec<String>> {
     )
 }
 
+/// A scene with some dials set.
+#[derive(Clone, Debug)]
+pub enum Setting {
+    /// It can be rendered, as far as can be told before.
+    Scene(Box<ResolvedScene>),
+    /// The method cannot do this, for a reason; other methods may.
+    LeftOut(String),
+}
+
 /// The scene with some dials set, checked like any other.
 ///
 /// # Errors
-/// What is wrong with a value, at its place under `/quality`.
+/// What is wrong with a value whatever the method, at its place under `/quality`.
 pub fn with_dials(
     resolved: &ResolvedScene,
     dials: &[(String, String)],
     limits: &Limits,
-) -> Result<ResolvedScene, SceneError> {
+) -> Result<Setting, SceneError> {
     let mut value = serde_json::to_value(&resolved.scene).map_err(|error| SceneError {
         issues: vec![Issue::invalid("", error.to_string(), "a scene")],
     })?;
+    let known = self::dials();
+    let pointer_to = |name: &str| match known.iter().find(|field| field.name == name) {
+        Some(field) => field.pointer.clone(),
+        None => format!("/quality/{name}"),
+    };
     let changes: Vec<(String, String)> = dials
         .iter()
-        .map(|(name, text)| (format!("/quality/{name}"), text.clone()))
+        .map(|(name, text)| (pointer_to(name), text.clone()))
         .collect();
     overrides::apply(&mut value, &changes);
-    let scene = Scene::from_value(value)?;
-    scene.validate(limits)?;
-    Ok(ResolvedScene {
+    let mut scene = Scene::from_value(value)?;
+    let misfits = methods::misfits(&scene.quality);
+    if misfits.is_empty() {
+        methods::validate(&scene, limits)?;
+    } else {
+        scene.validate(limits)?;
+    }
+    scene.quality.method = methods::shortest(&scene.quality.method);
+    let scene = ResolvedScene {
         scene,
         meshes: resolved.meshes.clone(),
+    };
+    Ok(match methods::reason_against(&scene)? {
+        None => Setting::Scene(Box::new(scene)),
+        Some(reason) => Setting::LeftOut(reason),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::dial::{Dial, as_json, with_dials};
+use super::dial::{Dial, Setting, as_json, with_dials};
 use super::figures::error_figures;
 use super::order::fit_orders;
 use super::pareto::mark_pareto_front;
@@ -149,6 +149,13 @@ pub fn run_study<E: std::error::Error>(
                 return Err(StudyError::Cancelled);
             }
             done += 1;
+            let scene = match scene {
+                Setting::Scene(scene) => scene,
+                Setting::LeftOut(reason) => {
+                    study.warnings.push(left_out(&words, &reason));
+                    continue;
+                }
+            };
             match measure(&scene, settings.runs, render) {
                 Ok((frame, costs)) => {
                     let image = compared_image(&frame, truth)?;
@@ -173,10 +180,9 @@ pub fn run_study<E: std::error::Error>(
                     });
                     sweep_images.push(image);
                 }
-                Err(Refusal::Setting(error)) => study.warnings.push(Warning::new(
-                    "setting_left_out",
-                    format!("{words} cannot be rendered: {error}"),
-                )),
+                Err(Refusal::Setting(error)) => {
+                    study.warnings.push(left_out(&words, &error.to_string()));
+                }
                 Err(Refusal::All(error)) => return Err(StudyError::Render(error)),
             }
         }
@@ -199,21 +205,40 @@ pub fn run_study<E: std::error::Error>(
 /// What [`run_study`] refuses before it spends any time, for those who have a truth to compute first.
 ///
 /// # Errors
-/// [`StudyError::Scene`] where a dial's value is not accepted, [`StudyError::TooMany`].
+/// [`StudyError::Scene`] where a dial's value is not accepted, [`StudyError::TooMany`], [`StudyError::NothingLeft`] where no method can do
+/// its setting.
 pub fn check<E: std::error::Error>(
     resolved: &ResolvedScene,
     settings: &SweepSettings,
     limits: &Limits,
 ) -> Result<(), StudyError<E>> {
-    scenes_of(&settings_of(settings), resolved, limits).map(drop)
+    let plan = settings_of(settings);
+    let scenes = scenes_of(&plan, resolved, limits)?;
+    let all = plan.iter().flat_map(|(_, settings)| settings);
+    let reasons: Option<Vec<String>> = all
+        .zip(&scenes)
+        .map(|(dials, setting)| match setting {
+            Setting::Scene(_) => None,
+            Setting::LeftOut(reason) => Some(left_out(&in_words(dials), reason).message),
+        })
+        .collect();
+    match reasons {
+        Some(reasons) if !reasons.is_empty() => Err(StudyError::NothingLeft(reasons.join("; "))),
+        _ => Ok(()),
+    }
+}
+
+fn left_out(setting: &str, reason: &str) -> Warning {
+    let message = format!("{setting} cannot be rendered: {reason}");
+    Warning::new("setting_left_out", message)
 }
 
 /// The scene with each setting, in order.
 fn scenes_of<E: std::error::Error>(
-    plan: &[(String, Vec<Setting>)],
+    plan: &[(String, Vec<DialTexts>)],
     resolved: &ResolvedScene,
     limits: &Limits,
-) -> Result<Vec<ResolvedScene>, StudyError<E>> {
+) -> Result<Vec<Setting>, StudyError<E>> {
     let total = plan.iter().map(|(_, settings)| settings.len()).sum();
     if total > MOST_SETTINGS {
         return Err(StudyError::TooMany(total));
@@ -223,7 +248,9 @@ fn scenes_of<E: std::error::Error>(
     settings
         .map(|dials| {
             let scene = with_dials(&base, dials, limits)?;
-            refuse_overruled(&scene, dials)?;
+            if let Setting::Scene(scene) = &scene {
+                refuse_overruled(scene, dials)?;
+            }
             Ok(scene)
         })
         .collect()
@@ -250,10 +277,10 @@ fn refuse_overruled(scene: &ResolvedScene, dials: &[(String, String)]) -> Result
 }
 
 /// One setting: dials with their values.
-type Setting = Vec<(String, String)>;
+type DialTexts = Vec<(String, String)>;
 
 /// The sweeps: what varies, and the settings.
-fn settings_of(settings: &SweepSettings) -> Vec<(String, Vec<Setting>)> {
+fn settings_of(settings: &SweepSettings) -> Vec<(String, Vec<DialTexts>)> {
     if !settings.grid {
         return settings
             .dials
@@ -267,7 +294,7 @@ fn settings_of(settings: &SweepSettings) -> Vec<(String, Vec<Setting>)> {
             })
             .collect();
     }
-    let mut all: Vec<Setting> = vec![Vec::new()];
+    let mut all: Vec<DialTexts> = vec![Vec::new()];
     for dial in &settings.dials {
         all = all
             .iter()

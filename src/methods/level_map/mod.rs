@@ -10,7 +10,9 @@ pub static METHOD: Method = Method {
     name: "level_map",
     summary: "beams end where their rays hit the floor or cross a mesh's level map",
     paper: "Tipprasert 2006, with its next step (§6.2): light placed on the actual hit",
-    dials: &[
+    dials: &[],
+    shaders: &[],
+    shared_dials: &[
         "water_cells",
         "map_texels",
         "level_map_texels",
@@ -35,6 +37,7 @@ pub static METHOD: Method = Method {
         lights_meshes_by_hits: true,
         reference_planes: 0,
         deposits_per_beam: 1,
+        skips_empty_planes: false,
         has_scratch_map: false,
         leaves_out: crate::facts::method::LeavesOut::default(),
     },

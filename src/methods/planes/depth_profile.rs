@@ -1,7 +1,6 @@
 //! Depth profile — which planes of an object are used: with smart slicing (Tipprasert 2006, §4.7.2) those whose acceptance interval
 //! holds a texel of the level map, otherwise all; and which of them come near the surface in each tile of the map.
 
-use crate::scene::Slicing;
 use crate::stages::level_map::LEVEL_MAPS;
 use crate::stages::light::Light;
 use crate::stages::queues::MOST_GROUPS;
@@ -25,11 +24,10 @@ pub static PASS: Pass = Pass {
     wanted: |facts| {
         wanted_for_planes(facts)?;
         let planes = facts.method.reference_planes;
-        Ok(match facts.quality.slicing {
-            Slicing::Uniform => format!("all {planes} planes are used"),
-            Slicing::Smart => {
-                format!("of {planes} planes those without a surface near them are left out")
-            }
+        Ok(if facts.method.skips_empty_planes {
+            format!("of {planes} planes those without a surface near them are left out")
+        } else {
+            format!("all {planes} planes are used")
         })
     },
     steps: Steps::BeamSet(|facts, set| {
@@ -39,7 +37,7 @@ pub static PASS: Pass = Pass {
                 let uniforms = plane_uniforms(facts, set, (object, 0));
                 steps.push(Step::compute(entry, Groups::Direct(groups), uniforms));
             };
-            if facts.quality.slicing == Slicing::Smart {
+            if facts.method.skips_empty_planes {
                 let groups = (texels * texels).div_ceil(TEXELS_PER_GROUP);
                 let columns = groups.min(MOST_GROUPS);
                 add("profile_count", [columns, groups.div_ceil(columns), 1]);

@@ -4,19 +4,47 @@
 pub mod depth_profile;
 pub mod plane_deposit;
 
+use super::reference_planes::PLANES;
 use super::{Conformance, Method};
+use crate::embed_shaders;
 use crate::facts::method::LeavesOut;
 use crate::facts::{MethodFacts, Product};
+use crate::scene::{Dial, DialKind, DialWord};
 use crate::stages::{deposit, hits, irradiance, landed, split, unfollowed};
+
+/// The word of [`SLICING`] that leaves planes out.
+pub const SMART: &str = "smart";
+
+/// Which reference planes are used.
+pub static SLICING: Dial = Dial {
+    name: "slicing",
+    help: "Which reference planes are used.",
+    kind: DialKind::Word {
+        words: &[
+            DialWord {
+                name: "uniform",
+                help: "all of them",
+            },
+            DialWord {
+                name: SMART,
+                help: "those near which the level map has a surface (Tipprasert 2006, §4.7.2): the same picture with fewer planes",
+            },
+        ],
+        default: "uniform",
+    },
+};
 
 /// See the module.
 pub static METHOD: Method = Method {
     name: "planes",
     summary: "light is accepted on a mesh where reference planes come near its level map",
     paper: "Tipprasert 2006, ch. 4",
-    dials: &[
-        "planes",
-        "slicing",
+    dials: &[&PLANES, &SLICING],
+    shaders: embed_shaders![
+        "methods/planes/depth_profile.wgsl",
+        "methods/planes/plane_deposit.wgsl"
+    ],
+    shared_dials: &[
         "water_cells",
         "map_texels",
         "level_map_texels",
@@ -39,9 +67,10 @@ pub static METHOD: Method = Method {
         product: Product::ReceiverMaps,
         conserves_energy: false,
         lights_meshes_by_hits: false,
-        reference_planes: quality.planes,
+        reference_planes: PLANES.integer(quality),
         // A beam may light texels of each plane.
-        deposits_per_beam: quality.planes,
+        deposits_per_beam: PLANES.integer(quality),
+        skips_empty_planes: SLICING.word(quality) == SMART,
         has_scratch_map: false,
         leaves_out: LeavesOut {
             shadows_on_objects: true,

@@ -3,7 +3,9 @@
 
 pub mod slice_deposit;
 
+use super::reference_planes::PLANES;
 use super::{Conformance, Method};
+use crate::embed_shaders;
 use crate::facts::method::LeavesOut;
 use crate::facts::{MethodFacts, Product};
 use crate::stages::{deposit, hits, irradiance, landed, split, unfollowed};
@@ -13,8 +15,9 @@ pub static METHOD: Method = Method {
     name: "volumetric",
     summary: "an image of each plane's slice, drawn anew for every frame, masks the light of all beams",
     paper: "Tipprasert 2006, §5.2.1",
-    dials: &[
-        "planes",
+    dials: &[&PLANES],
+    shaders: embed_shaders!["methods/volumetric/slice_deposit.wgsl"],
+    shared_dials: &[
         "water_cells",
         "map_texels",
         "level_map_texels",
@@ -36,8 +39,9 @@ pub static METHOD: Method = Method {
         product: Product::ReceiverMaps,
         conserves_energy: false,
         lights_meshes_by_hits: false,
-        reference_planes: quality.planes,
-        deposits_per_beam: quality.planes,
+        reference_planes: PLANES.integer(quality),
+        deposits_per_beam: PLANES.integer(quality),
+        skips_empty_planes: false,
         has_scratch_map: true,
         leaves_out: LeavesOut {
             shadows_on_objects: true,

@@ -43,6 +43,7 @@ struct Inner {
     builds: VecDeque<GpuError>,
     idle_errors: VecDeque<GpuError>,
     failing_check: Option<String>,
+    dial_basis: String,
     gate_open: bool,
     builds_held: bool,
     diary: Vec<String>,
@@ -69,6 +70,11 @@ impl Control {
     /// Lets the self-check fail by this name.
     pub(crate) fn fail_self_check(&self, name: &str) {
         self.inner.lock().unwrap().failing_check = Some(name.to_owned());
+    }
+
+    /// Sets what dials are chosen by, for the coming builds.
+    pub(crate) fn choose_dials_by(&self, basis: &str) {
+        self.inner.lock().unwrap().dial_basis = basis.to_owned();
     }
 
     /// Holds builds up until `release_builds`.
@@ -190,6 +196,10 @@ pub(crate) fn adapter() -> AdapterStats {
 impl RenderBackend for Fake {
     fn adapter(&self) -> AdapterStats {
         adapter()
+    }
+
+    fn dial_basis(&self) -> String {
+        self.control.inner.lock().unwrap().dial_basis.clone()
     }
 
     fn plan(
