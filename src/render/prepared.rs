@@ -6,6 +6,7 @@ use super::ms_since;
 use crate::facts::SceneFacts;
 use crate::methods;
 use crate::scene::{ResolvedScene, SceneError};
+use crate::tuning::chooses_dials;
 
 /// A scene with its facts, its warnings and its hash. Made where the request is, which may take 100 ms for the warnings of a large
 /// scene, so that the GPU thread has only to plan and render.
@@ -25,7 +26,7 @@ impl Prepared {
     /// When the scene cannot be rendered, whatever the GPU.
     pub fn new(resolved: ResolvedScene) -> Result<Self, SceneError> {
         let started = Instant::now();
-        let facts = if asks_for_dials(&resolved) {
+        let facts = if chooses_dials(&resolved.scene.quality) {
             methods::facts(&resolved)?
         } else {
             methods::facts_with_warnings(&resolved)?
@@ -87,11 +88,6 @@ impl Prepared {
 
     /// Whether `quality` asks for an error or a time, from which the renderer chooses the dials.
     pub fn asks_for_dials(&self) -> bool {
-        asks_for_dials(&self.resolved)
+        chooses_dials(&self.resolved.scene.quality)
     }
-}
-
-fn asks_for_dials(resolved: &ResolvedScene) -> bool {
-    let quality = &resolved.scene.quality;
-    quality.target_error.is_some() || quality.time_budget_ms.is_some()
 }
