@@ -16,12 +16,12 @@ const TERM_MISSED: u32 = 2u;
 const TERM_EXTINGUISHED: u32 = 3u;
 const TERM_LEFT: u32 = 6u;
 const TERM_LANDED: u32 = 9u;
-const TERM_TORN: u32 = 12u;       // flux of beams that straddle receivers to the end
-const TERM_TORN_COUNT: u32 = 13u; // how many those are
+const TERM_UNRESOLVED: u32 = 12u;       // flux of beams that straddle receivers to the end
+const TERM_UNRESOLVED_COUNT: u32 = 13u; // how many those are
 const TERM_CUT: u32 = 14u;        // flux of those that were halved less often than asked for, because the queue was full
-const TERM_TURNED: u32 = 15u;     // flux of slopes that look away from the light
-const TERM_AGAIN: u32 = 16u;      // flux of beams that come out of the water again
-const TERM_BARED: u32 = 17u;      // flux of beams that start below the floor
+const TERM_FACING_AWAY: u32 = 15u;     // flux of slopes that look away from the light
+const TERM_LEAVING_AGAIN: u32 = 16u;      // flux of beams that come out of the water again
+const TERM_BARED_FLOOR: u32 = 17u;      // flux of beams that start below the floor
 
 fn add_flux(texel: u32, channel: u32, channels: u32, counts: f32) {
     let place = texel * channels + channel;

@@ -122,13 +122,13 @@ struct Piece {
     lengths_m: vec3f,
 }
 
-fn piece_of(b: Beam, k: i32, is_torn: bool) -> Piece {
+fn piece_of(b: Beam, k: i32, is_unresolved: bool) -> Piece {
     var piece = Piece(b.receiver[k], b.uv, b.t);
-    if b.receiver[k] == NO_RECEIVER || (!is_torn && ends_nowhere(b)) {
+    if b.receiver[k] == NO_RECEIVER || (!is_unresolved && ends_nowhere(b)) {
         piece.receiver = NO_RECEIVER;
         return piece;
     }
-    if !is_torn { return piece; }
+    if !is_unresolved { return piece; }
     piece.lengths_m = vec3f(b.t[k]);
     let r = receivers[b.receiver[k]];
     for (var corner = 0; corner < 3; corner++) {
@@ -144,8 +144,8 @@ fn piece_of(b: Beam, k: i32, is_torn: bool) -> Piece {
 
 // A queued footprint: beam, and path with 2 bits per halving, then from bit 16 on the halvings (4 bits), whether it is torn (1), and
 // its corner (2).
-fn wide_word(path: u32, level: u32, is_torn: bool, k: i32) -> u32 {
-    return path | (level << 16u) | (u32(is_torn) << 20u) | (u32(k) << 21u);
+fn wide_word(path: u32, level: u32, is_unresolved: bool, k: i32) -> u32 {
+    return path | (level << 16u) | (u32(is_unresolved) << 20u) | (u32(k) << 21u);
 }
 
 // Queues a footprint for workgroups of its own; false where there is no room left.
@@ -162,12 +162,12 @@ fn push_wide(beam_index: u32, word: u32) -> bool {
 }
 
 // Lays a part of a beam that `path` and `level` lead to. There is one place that deposits, see `deposit_row`.
-fn deposit_part(b: Beam, is_torn: bool, beam_index: u32, path: u32, level: u32) -> Losses {
+fn deposit_part(b: Beam, is_unresolved: bool, beam_index: u32, path: u32, level: u32) -> Losses {
     var losses = NO_LOSSES;
-    let pieces = select(1, 3, is_torn);
+    let pieces = select(1, 3, is_unresolved);
     let flux = b.transmitted / f32(pieces);
     for (var k = 0; k < pieces; k++) {
-        let piece = piece_of(b, k, is_torn);
+        let piece = piece_of(b, k, is_unresolved);
         if piece.receiver == NO_RECEIVER {
             losses.missed += flux;
             continue;
@@ -182,7 +182,7 @@ fn deposit_part(b: Beam, is_torn: bool, beam_index: u32, path: u32, level: u32) 
         }
         let box = texel_box(target_map, piece.uv[0], piece.uv[1], piece.uv[2]);
         let extent = vec2u(box.last - box.first + 1);
-        if extent.x * extent.y > light.wide_texels && push_wide(beam_index, wide_word(path, level, is_torn, k)) { continue; }
+        if extent.x * extent.y > light.wide_texels && push_wide(beam_index, wide_word(path, level, is_unresolved, k)) { continue; }
         losses.left += arriving * deposit_triangle(target_map, piece.uv[0], piece.uv[1], piece.uv[2], arriving);
     }
     return losses;
@@ -233,8 +233,8 @@ fn halve(beam_index: u32, path: u32, is_last: bool) {
         note_term(TERM_REFLECTED, b.unit_flux - b.transmitted);
         if b.transmitted == 0.0 { continue; }
         if straddles {
-            add_energy(TERM_TORN, b.transmitted * light.energy_scale);
-            atomicAdd(&energy[2u * TERM_TORN_COUNT], 1u);
+            add_energy(TERM_UNRESOLVED, b.transmitted * light.energy_scale);
+            atomicAdd(&energy[2u * TERM_UNRESOLVED_COUNT], 1u);
             if split.level < light.split_levels { add_energy(TERM_CUT, b.transmitted * light.energy_scale); }
         }
         let own_path = select(4u * path + k, 0u, is_whole_beam);
@@ -276,10 +276,10 @@ fn split_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
         var points: array<Corner, 6>;
         for (var i = 0u; i < 3u; i++) { points[i] = corner_at(c[i]); }
         let b = part_of(&points, 0u);
-        let is_torn = ((word >> 20u) & 1u) == 1u;
-        let piece = piece_of(b, i32((word >> 21u) & 3u), is_torn);
+        let is_unresolved = ((word >> 20u) & 1u) == 1u;
+        let piece = piece_of(b, i32((word >> 21u) & 3u), is_unresolved);
         let target_map = target_of(receivers[piece.receiver]);
-        let arriving = b.transmitted / select(1.0, 3.0, is_torn) * mean_transmission(piece.lengths_m);
+        let arriving = b.transmitted / select(1.0, 3.0, is_unresolved) * mean_transmission(piece.lengths_m);
         var beside = 0.0;
         if is_segment(piece.uv[0], piece.uv[1], piece.uv[2]) {
             if lane == 0u { beside = deposit_segment(target_map, piece.uv[0], piece.uv[1], piece.uv[2], arriving); }

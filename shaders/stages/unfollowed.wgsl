@@ -56,7 +56,7 @@ fn unfollowed_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocatio
     var t_end = 0.0;
     for (var half = 0u; half < 2u; half++) {
         let b = grid_beam(cell, half);
-        note_unfollowed(TERM_TURNED, -signed_unit_flux(b.origin, b.direction));
+        note_unfollowed(TERM_FACING_AWAY, -signed_unit_flux(b.origin, b.direction));
         transmitted += b.transmitted;
         t_end = max(t_end, max(b.t.x, max(b.t.y, b.t.z)));
     }
@@ -66,8 +66,8 @@ fn unfollowed_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocatio
     let entry = entry_at(place, water_surface_at(vertex_m(place), light.wave_count));
     if entry.transmittance == 0.0 { return; }
     if entry.origin.y < unfollowed.floor_y_m {
-        note_unfollowed(TERM_BARED, transmitted);
+        note_unfollowed(TERM_BARED_FLOOR, transmitted);
     } else if meets_water_again(entry.origin, entry.direction, t_end) {
-        note_unfollowed(TERM_AGAIN, transmitted);
+        note_unfollowed(TERM_LEAVING_AGAIN, transmitted);
     }
 }

@@ -7,9 +7,10 @@
 //!   [`output`]: camera, layers, the receiver of a map;
 //! - `placement`: objects and the boxes of their level maps; `detail`: texels of those by their size in the picture; `source`: where
 //!   light comes from; `window`, `lamp_window`: through which water it reaches the receivers;
-//! - `warnings`: what is left out or sub-sampled; `unfollowed`, `stopped`: how much light that is;
+//! - `warnings`: what is left out or sub-sampled; `unfollowed`, `blocked`: how much light that is;
 //! - `moment`: what of all this changes with time.
 
+mod blocked;
 mod detail;
 mod lamp_window;
 pub mod lights;
@@ -19,7 +20,6 @@ pub mod output;
 pub mod placement;
 pub mod receivers;
 pub mod source;
-mod stopped;
 pub mod unfollowed;
 pub mod warnings;
 pub mod water;

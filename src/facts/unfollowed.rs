@@ -30,7 +30,7 @@ pub fn waves_shade_waves(light: u32) -> Warning {
 }
 
 /// Whether slopes of these waves can look away from a light.
-pub(super) fn looks_away(surface: &Surface, light: &BeamSet) -> bool {
+pub(super) fn can_face_away(surface: &Surface, light: &BeamSet) -> bool {
     if surface.max_slope() == 0.0 {
         return false;
     }
@@ -95,22 +95,22 @@ fn may_leave_again(surface: &Surface, light: &BeamSet, ior: f64) -> bool {
 
 /// Ways of light that the waves make possible and that are not followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct UnfollowedWays {
+pub struct UnfollowedPaths {
     /// Slopes look away from a light.
-    pub turned: bool,
+    pub faces_away: bool,
     /// Rays come out of the water again.
-    pub again: bool,
+    pub leaves_again: bool,
     /// Troughs lie below the floor.
-    pub bared: bool,
+    pub bares_floor: bool,
 }
 
-impl UnfollowedWays {
+impl UnfollowedPaths {
     /// Them in words; empty where there are none.
     pub fn words(self) -> Vec<&'static str> {
         let all = [
-            (self.turned, "slopes that look away from it"),
-            (self.again, "rays that come out of the water again"),
-            (self.bared, "troughs below the floor"),
+            (self.faces_away, "slopes that look away from it"),
+            (self.leaves_again, "rays that come out of the water again"),
+            (self.bares_floor, "troughs below the floor"),
         ];
         all.into_iter()
             .filter_map(|(is, words)| is.then_some(words))
@@ -120,13 +120,13 @@ impl UnfollowedWays {
 
 impl SceneFacts {
     /// Which ways of light the waves of this scene make possible that are not followed.
-    pub fn unfollowed_ways(&self) -> UnfollowedWays {
+    pub fn unfollowed_paths(&self) -> UnfollowedPaths {
         let any = |may: &dyn Fn(&BeamSet) -> bool| self.lights.beam_sets.iter().any(may);
         let floor = self.receivers.floor.as_ref();
-        UnfollowedWays {
-            turned: any(&|light| looks_away(&self.water.surface, light)),
-            again: any(&|light| may_leave_again(&self.water.surface, light, self.water.ior)),
-            bared: floor.is_some_and(|floor| self.water.surface.max_height_m() > -floor.y_m)
+        UnfollowedPaths {
+            faces_away: any(&|light| can_face_away(&self.water.surface, light)),
+            leaves_again: any(&|light| may_leave_again(&self.water.surface, light, self.water.ior)),
+            bares_floor: floor.is_some_and(|floor| self.water.surface.max_height_m() > -floor.y_m)
                 && any(&|light| !matches!(light.source, Source::Submerged { .. })),
         }
     }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::blocked::{self, Blocked};
 use super::source::Source;
-use super::stopped::{self, Stopped};
 use super::unfollowed;
 use super::window::Rect;
 use super::{BeamSet, SceneFacts};
@@ -46,19 +46,19 @@ fn with_flux(warning: Warning, flux_w: [f64; 3]) -> Warning {
 /// All that a scene tells before its frame.
 pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warning> {
     let meshes = &resolved.meshes;
-    let stopped = Stopped::new(facts, meshes);
+    let blocked = Blocked::new(facts, meshes);
     let mut all = Vec::new();
     all.extend(scattering(&resolved.scene.water.scattering_per_m));
     all.extend(mended_meshes(facts, meshes));
-    all.extend(dry_parts(facts, &stopped));
+    all.extend(dry_parts(facts, &blocked));
     all.extend(thin_objects(facts, meshes));
-    all.extend(left_out_by_method(facts, &stopped));
+    all.extend(left_out_by_method(facts, &blocked));
     all.extend(coarse_cells(facts));
     for light in &facts.lights.beam_sets {
         all.extend(from_below(light));
-        all.extend(within_objects(facts, light, &stopped));
+        all.extend(within_objects(facts, light, &blocked));
         all.extend(close_to_water(facts, light));
-        if unfollowed::looks_away(&facts.water.surface, light) {
+        if unfollowed::can_face_away(&facts.water.surface, light) {
             all.push(unfollowed::waves_shade_waves(light.light_index));
         }
     }
@@ -110,7 +110,7 @@ fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
 }
 
 /// Objects above the water, or reaching out of it: their shadows on the water.
-fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
+fn dry_parts(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning> {
     let mut through_water = facts
         .lights
         .beam_sets
@@ -127,7 +127,7 @@ fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
                 "the object is above the water; its shadow on the water is not simulated",
                 at,
             );
-            return Some(with_flux(found, stopped.above_water_w(index)));
+            return Some(with_flux(found, blocked.above_water_w(index)));
         }
         if object.max.y <= 0.0 {
             return None;
@@ -137,7 +137,7 @@ fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
             "the object reaches through the water at rest; the shadow of its dry part on the water is not simulated",
             at,
         );
-        let flux_w = stopped.above_water_w(index);
+        let flux_w = blocked.above_water_w(index);
         // What stays below the highest crests may never be seen out of the water.
         let is_clear = object.max.y > facts.water.surface.max_height_m();
         (is_clear || flux_w != [0.0; 3]).then(|| with_flux(found, flux_w))
@@ -197,7 +197,7 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
 }
 
 /// What the method leaves out.
-fn left_out_by_method(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
+fn left_out_by_method(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning> {
     let mut all = Vec::new();
     let wet = facts.wet_objects().count();
     if facts.lights.lit.is_empty() {
@@ -213,7 +213,7 @@ fn left_out_by_method(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning>
             ),
             "/quality/method",
         );
-        all.push(with_flux(found, stopped.stopped_again_w()));
+        all.push(with_flux(found, blocked.blocked_again_w()));
     }
     if wet > 0 && facts.quality.layers > 1 && method.leaves_out.further_layers {
         all.push(warning(
@@ -273,7 +273,7 @@ fn from_below(light: &BeamSet) -> Option<Warning> {
     })
 }
 
-fn within_objects(facts: &SceneFacts, light: &BeamSet, stopped: &Stopped<'_>) -> Vec<Warning> {
+fn within_objects(facts: &SceneFacts, light: &BeamSet, blocked: &Blocked<'_>) -> Vec<Warning> {
     let Some(position_m) = light.source.position_m() else {
         return Vec::new();
     };
@@ -285,11 +285,11 @@ fn within_objects(facts: &SceneFacts, light: &BeamSet, stopped: &Stopped<'_>) ->
             ),
             format!("/lights/{}", light.light_index),
         );
-        with_flux(found, stopped.onto_w(index, position_m, light.power))
+        with_flux(found, blocked.onto_w(index, position_m, light.power))
     };
     facts
         .wet_objects()
-        .filter(|&index| stopped::is_around(&facts.receivers.objects[index], position_m))
+        .filter(|&index| blocked::is_around(&facts.receivers.objects[index], position_m))
         .map(of_object)
         .collect()
 }
@@ -316,7 +316,7 @@ fn close_to_water(facts: &SceneFacts, light: &BeamSet) -> Option<Warning> {
     let unit = near
         .grown(close_m)
         .within(light.window)
-        .map_or(0.0, |rect| stopped::rect_sr(rect, from_m));
+        .map_or(0.0, |rect| blocked::rect_sr(rect, from_m));
     let found = warning(
         "light_close_to_water",
         format!(

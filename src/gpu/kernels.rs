@@ -82,7 +82,7 @@ impl KernelCache {
             return Ok(id);
         }
         let kernel = if in_pieces {
-            let text = pieces::told_its_piece(&parsed.module, path, entry)?;
+            let text = pieces::with_piece_offset(&parsed.module, path, entry)?;
             Kernel::from_text(gpu, path, text, entry, &constants)?
         } else {
             Kernel::new(gpu, path, &parsed.module, entry, &constants)?

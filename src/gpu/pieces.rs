@@ -1,7 +1,7 @@
 //! Long dispatches in pieces: a driver gives up on what runs for seconds, and nothing can be cancelled in the meantime.
 //!
 //! A piece is a box of workgroups. WebGPU has no first workgroup for a dispatch, so the entry point is told by a uniform where its
-//! piece begins: [`told_its_piece`] rewrites the builtins of any entry point, and passes know nothing of it.
+//! piece begins: [`with_piece_offset`] rewrites the builtins of any entry point, and passes know nothing of it.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -85,7 +85,7 @@ pub fn next_size(groups: u64, ms: f64) -> u64 {
 ///
 /// # Errors
 /// When `entry` is not there, or its parameters cannot be read.
-pub fn told_its_piece(module: &Module, path: &str, entry: &str) -> Result<String, GpuError> {
+pub fn with_piece_offset(module: &Module, path: &str, entry: &str) -> Result<String, GpuError> {
     let fault = |message: &str| GpuError::Shader {
         shader: path.to_owned(),
         message: format!("`{entry}` cannot be run in pieces: {message}"),

@@ -40,7 +40,7 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
     for mut sums in of_lights.into_iter().flatten() {
         sums.account.closure = closure(&sums.account);
         warnings.extend(not_conserved(facts, &sums.account));
-        warnings.extend(torn(&sums));
+        warnings.extend(unresolved(&sums));
         warnings.extend(not_followed(&sums));
         accounts.push(sums.account);
     }
@@ -56,7 +56,7 @@ struct LightSums {
     /// Each term that is the same in all channels, W.
     grey_w: [[f64; 3]; ENERGY_TERMS as usize],
     /// Parts of beams that straddle receivers to the end.
-    torn: u64,
+    unresolved: u64,
 }
 
 impl LightSums {
@@ -68,7 +68,7 @@ impl LightSums {
             },
             unit: [0.0; ENERGY_TERMS as usize],
             grey_w: [[0.0; 3]; ENERGY_TERMS as usize],
-            torn: 0,
+            unresolved: 0,
         }
     }
 
@@ -108,7 +108,7 @@ impl LightSums {
                 *sum += w;
             }
         }
-        self.torn += terms[term::TORN_COUNT];
+        self.unresolved += terms[term::UNRESOLVED_COUNT];
     }
 
     /// Share of the emitted flux that a term is, percent.
@@ -131,24 +131,24 @@ fn not_followed(sums: &LightSums) -> Vec<Warning> {
             ..warning
         })
     };
-    let turned = measured(term::TURNED, unfollowed::waves_shade_waves(light));
+    let turned = measured(term::FACING_AWAY, unfollowed::waves_shade_waves(light));
     let again = measured(
-        term::AGAIN,
+        term::LEAVING_AGAIN,
         Warning::new(
             "light_leaves_water_again",
             format!(
                 "{:.3} % of the flux of light {light} meets steep waves a second time on its way; it is followed as if it stayed under water",
-                sums.percent(term::AGAIN)
+                sums.percent(term::LEAVING_AGAIN)
             ),
         ),
     );
     let bared = measured(
-        term::BARED,
+        term::BARED_FLOOR,
         Warning::new(
             "waves_bare_floor",
             format!(
                 "{:.3} % of the flux of light {light} enters where troughs lie below the floor; it falls on the floor refracted, without a way through water",
-                sums.percent(term::BARED)
+                sums.percent(term::BARED_FLOOR)
             ),
         ),
     );
@@ -178,7 +178,11 @@ pub(super) fn join_warnings(known: &mut Vec<Warning>, seen: Vec<Warning>, has_lo
 }
 
 /// Puts the flux concerned to warnings that were there before it was known.
-pub(super) fn tell_flux(warnings: &mut [Warning], facts: &SceneFacts, energy: &[EnergyAccount]) {
+pub(super) fn add_flux_to_warnings(
+    warnings: &mut [Warning],
+    facts: &SceneFacts,
+    energy: &[EnergyAccount],
+) {
     let sum_w = |of: &dyn Fn(&EnergyAccount) -> Option<[f64; 3]>| {
         let each = energy.iter().filter_map(of);
         each.fold([0.0; 3], |sum, flux_w| {
@@ -247,15 +251,15 @@ fn not_conserved(facts: &SceneFacts, account: &EnergyAccount) -> Option<Warning>
 }
 
 /// What beams that straddle receivers to the end have come to.
-fn torn(sums: &LightSums) -> Option<Warning> {
-    if sums.torn == 0 {
+fn unresolved(sums: &LightSums) -> Option<Warning> {
+    if sums.unresolved == 0 {
         return None;
     }
     let light = sums.account.light;
     let mut message = format!(
         "{} parts of beams of light {light} with {:.3} % of its flux still straddle receivers after quality.split_levels halvings; each corner took a third",
-        sums.torn,
-        sums.percent(term::TORN),
+        sums.unresolved,
+        sums.percent(term::UNRESOLVED),
     );
     if sums.unit[term::CUT] > 0.0 {
         let cut = format!(
@@ -265,8 +269,8 @@ fn torn(sums: &LightSums) -> Option<Warning> {
         message.push_str(&cut);
     }
     Some(Warning {
-        flux_w: Some(sums.grey_w[term::TORN]),
-        ..Warning::new("beams_torn", message)
+        flux_w: Some(sums.grey_w[term::UNRESOLVED]),
+        ..Warning::new("beams_unresolved", message)
     })
 }
 

@@ -301,7 +301,7 @@ impl Renderer {
         };
         let has_looked = !stats.energy.is_empty();
         collect::join_warnings(&mut stats.warnings, run.warnings, has_looked);
-        collect::tell_flux(&mut stats.warnings, facts, &stats.energy);
+        collect::add_flux_to_warnings(&mut stats.warnings, facts, &stats.energy);
         if let Some(tune::Tuned { chosen, .. }) = tuned {
             let unmet = tune::unmet(prepared.resolved(), &chosen);
             stats.warnings.extend(unmet);

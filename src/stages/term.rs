@@ -13,14 +13,14 @@ pub const LEFT: usize = 6;
 /// Lies on the maps, per channel.
 pub const LANDED: usize = 9;
 /// Flux of beams that straddle receivers to the end.
-pub const TORN: usize = 12;
+pub const UNRESOLVED: usize = 12;
 /// How many those are.
-pub const TORN_COUNT: usize = 13;
+pub const UNRESOLVED_COUNT: usize = 13;
 /// Flux of those that were halved less often than asked for, because the queue was full.
 pub const CUT: usize = 14;
 /// Flux of slopes that look away from the light: water in their shadow gets so much too much.
-pub const TURNED: usize = 15;
+pub const FACING_AWAY: usize = 15;
 /// Flux of beams that come out of the water again.
-pub const AGAIN: usize = 16;
+pub const LEAVING_AGAIN: usize = 16;
 /// Flux of beams that start below the floor.
-pub const BARED: usize = 17;
+pub const BARED_FLOOR: usize = 17;

@@ -37,8 +37,8 @@ pub static PASS: Pass = Pass {
     uniforms: &[("light", Light::LAYOUT), ("unfollowed", Unfollowed::LAYOUT)],
     wanted: |facts| {
         wanted_for_light(facts)?;
-        let ways = facts.unfollowed_ways().words();
-        if ways.is_empty() {
+        let paths = facts.unfollowed_paths().words();
+        if paths.is_empty() {
             return Err(
                 "no wave is so steep that light comes out of the water again or slopes look away from it, nor so high that it bares the floor"
                     .to_owned(),
@@ -46,16 +46,16 @@ pub static PASS: Pass = Pass {
         }
         Ok(format!(
             "counts light that is not followed: {}",
-            ways.join(", ")
+            paths.join(", ")
         ))
     },
     steps: Steps::FineBeamSet(|facts, set| {
         if facts.lights.beam_sets[set.index].is_submerged() {
             return Vec::new();
         }
-        let ways = facts.unfollowed_ways();
+        let paths = facts.unfollowed_paths();
         let surface = &facts.water.surface;
-        let least_step_m = if ways.again || ways.bared {
+        let least_step_m = if paths.leaves_again || paths.bares_floor {
             (surface.shortest_wave_m() / STEPS_PER_WAVE).min(LONGEST_STEP_M)
         } else {
             0.0
@@ -79,8 +79,12 @@ pub static PASS: Pass = Pass {
     }),
     // Where rays are followed on, each goes through the waves some dozens of times.
     work: |facts| {
-        let ways = facts.unfollowed_ways();
-        let steps = if ways.again || ways.bared { 32.0 } else { 0.0 };
+        let paths = facts.unfollowed_paths();
+        let steps = if paths.leaves_again || paths.bares_floor {
+            32.0
+        } else {
+            0.0
+        };
         let waves = facts.water.surface.gpu_element_count() as f64;
         cells(facts) * (2.0 + steps * (1.0 + waves))
     },

@@ -29,7 +29,7 @@ const DIRECTIONS: [f64; 2] = [64.0, 1024.0];
 const BEHIND: f64 = 1e-6;
 
 /// Light that objects stop, of the lights of a scene whose windows are known.
-pub(super) struct Stopped<'a> {
+pub(super) struct Blocked<'a> {
     facts: &'a SceneFacts,
     meshes: &'a [Arc<Mesh>],
     mesh_from_local: Vec<DAffine3>,
@@ -37,7 +37,7 @@ pub(super) struct Stopped<'a> {
     directions: u32,
 }
 
-impl<'a> Stopped<'a> {
+impl<'a> Blocked<'a> {
     /// `meshes` are those of the scene's objects, one each.
     pub(super) fn new(facts: &'a SceneFacts, meshes: &'a [Arc<Mesh>]) -> Self {
         let pairs = facts.receivers.objects.len() * facts.lights.beam_sets.len();
@@ -78,9 +78,9 @@ impl<'a> Stopped<'a> {
         self.of_all_lights(|light| self.unit_flux_above(object, light))
     }
 
-    /// Flux that one object after another stops although an object before it has stopped it already, all lights together, W; as it
+    /// Flux that one object after another stops although an object before it has blocked it already, all lights together, W; as it
     /// goes under the water at rest, without what is absorbed.
-    pub(super) fn stopped_again_w(&self) -> [f64; 3] {
+    pub(super) fn blocked_again_w(&self) -> [f64; 3] {
         self.of_all_lights(|light| self.unit_flux_again(light))
     }
 
@@ -151,7 +151,7 @@ impl<'a> Stopped<'a> {
         shadowed.count() as f64 * step_m.element_product()
     }
 
-    /// Flux of a light of unit power that is stopped a second and further times, m² or sr.
+    /// Flux of a light of unit power that is blocked a second and further times, m² or sr.
     fn unit_flux_again(&self, light: &BeamSet) -> f64 {
         let again = |from_m: DVec3, direction: DVec3| {
             // What goes up ends at the water.
