@@ -108,8 +108,8 @@ impl UnfollowedPaths {
     /// Them in words; empty where there are none.
     pub fn words(self) -> Vec<&'static str> {
         let all = [
-            (self.faces_away, "slopes that look away from it"),
-            (self.leaves_again, "rays that come out of the water again"),
+            (self.faces_away, "slopes that face away from the light"),
+            (self.leaves_again, "rays that leave the water again"),
             (self.bares_floor, "troughs below the floor"),
         ];
         all.into_iter()

@@ -396,7 +396,7 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     if facts.quality.level_of_detail > 0.0 && facts.output.camera.is_none() {
         add(
             "level_of_detail",
-            "the output is an irradiance map, seen by no camera: every object gets quality.level_map_texels",
+            "the output is an irradiance map, which has no camera: every object gets quality.level_map_texels",
         );
     }
     absent
