@@ -16,8 +16,8 @@ use crate::graph::Clear;
 pub const SPLIT_HEAD_WORDS: u64 = 16;
 /// Word of that head where the dispatch over wide footprints begins; the word before it is their count.
 pub const SPLIT_WIDE_WORD: u32 = 13;
-/// Capacity of a level of the split queue in parts, per cell along the window's side; it doubles with each level. Enough for shadow
-/// edges whose total length is thirty times the window's side.
+/// Capacity of a level of the split queue in parts, per cell along the window's side and times 2^`split_levels`. Enough for shadow edges
+/// whose total length is thirty times the window's side.
 const PARTS_PER_CELL: u64 = 64;
 /// Largest capacity of a level of the split queue, in parts: 32 MiB.
 const MOST_PARTS: u64 = 1 << 22;

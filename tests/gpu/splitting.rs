@@ -190,7 +190,7 @@ fn chequered() -> Vec<u8> {
 }
 
 #[test]
-fn what_the_queue_cannot_hold_is_torn_and_said() {
+fn what_the_queue_cannot_hold_stays_unresolved_and_is_reported() {
     let mesh = scene_files::mesh_of(&chequered());
     let scene = pool(
         json!([{ "mesh": mesh.id, "translation_m": [0, -1.5, 0], "scale": 2.0 }]),
