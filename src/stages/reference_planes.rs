@@ -142,7 +142,7 @@ pub fn over_queue(
     [step(narrow, 0), step(wide, WIDE_DISPATCH)]
 }
 
-/// Passes that lay light on objects by planes are in when light meets objects under water.
+/// The reason why passes that place light by planes run: light falls on objects under water.
 pub fn wanted_for_planes(facts: &SceneFacts) -> Result<String, String> {
     wanted_for_objects(facts)
 }
