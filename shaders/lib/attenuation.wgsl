@@ -1,4 +1,4 @@
-// Loss of a beam on its way through water. Twin of src/physics/attenuation.rs.
+// Attenuation of a beam in water. Twin of src/physics/attenuation.rs.
 
 // Fraction left after `length_m` with extinction `c_per_m` (both 0 … 10⁶): e^(−c d).
 fn transmission(c_per_m: f32, length_m: f32) -> f32 {
