@@ -6,10 +6,10 @@ var<workgroup> account: array<atomic<u32>, 12>;
 var<private> finer: f32 = 1.0;
 
 // Whether terms are added directly to the global sums: parts of a near point light's beams differ too much in size for one scale.
-var<private> straight: bool = false;
+var<private> is_direct: bool = false;
 
 fn note_term(term: u32, unit_flux: f32) {
-    if straight {
+    if is_direct {
         if unit_flux > 0.0 { add_energy(term, unit_flux * light.energy_scale); }
         return;
     }

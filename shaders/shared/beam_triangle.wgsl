@@ -25,7 +25,7 @@ fn is_whole(b: Beam) -> bool {
 }
 
 // Whether a whole beam hits no receiver.
-fn ends_nowhere(b: Beam) -> bool {
+fn hits_nothing(b: Beam) -> bool {
     return any(b.receiver == vec3i(NO_RECEIVER));
 }
 

@@ -63,13 +63,13 @@ fn is_edge_texel(map_offset: u32, size: u32, texel: vec2i) -> bool {
 
 // Whether the last march ended more than a texel below the front of its texel: the ray entered through a side or from behind. This happens
 // where a solid becomes thin towards its silhouette and a tilted ray hits its far side.
-var<private> came_from_aside: bool = false;
+var<private> entered_through_side: bool = false;
 
 // Distance t (m) at which a ray in map space enters the solid of the level map, between t_min and t_max. t < 0: no hit, or AT_EDGE if it
 // reaches an edge texel first.
 // Hierarchical traversal: cells whose depth interval does not overlap the ray's interval are skipped whole.
 fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> f32 {
-    came_from_aside = false;
+    entered_through_side = false;
     let side = f32(r.map_width);
     // Clip to the box of the map.
     var t_in = t_min;
@@ -110,7 +110,7 @@ fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_m
         let depths = level_map_depths(r.level_map_offset, r.map_width, level, cell);
         if max(s_0, s_1) >= depths.x && min(s_0, s_1) <= depths.y {
             if level == 0u {
-                came_from_aside = s_0 > depths.x + r.s_per_m * inverseSqrt(r.density_per_flux);
+                entered_through_side = s_0 > depths.x + r.s_per_m * inverseSqrt(r.density_per_flux);
                 if s_0 >= depths.x || abs(direction.z) < 1e-20 { return t; }
                 return clamp(t + (depths.x - s_0) / direction.z, t, t_leave);
             }

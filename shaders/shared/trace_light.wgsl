@@ -45,7 +45,7 @@ fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> H
     let d = direction_to_map(r, direction);
     if PLANES { return trace_planes(r, number, o, d, t_max); }
     let t = march_level_map(r, o, d, 0.0, t_max);
-    if t == AT_EDGE || (light.layers > 1u && t >= 0.0 && came_from_aside) {
+    if t == AT_EDGE || (light.layers > 1u && t >= 0.0 && entered_through_side) {
         let met = trace_instance(index, origin, direction, 0.0, t_max);
         if met.t >= t_max { return nothing; }
         let q = o + d * met.t;

@@ -124,7 +124,7 @@ struct Pixel {
     sky_path_m: f32,
 }
 
-fn look_from_air(ray: Ray) -> Pixel {
+fn trace_from_air(ray: Ray) -> Pixel {
     let t_water = meet_water(ray, 1.0, VERY_FAR_M);
     let limit = select(VERY_FAR_M, t_water, t_water >= 0.0);
     let dry = trace_scene(ray, 0.0, limit);
@@ -147,7 +147,7 @@ fn look_from_air(ray: Ray) -> Pixel {
     return Pixel(seen, p + refracted.xyz * seen.t, t_water, t_water + seen.t / view.ior, max(seen.t, 0.0), weight, reflectance, 0.0);
 }
 
-fn look_from_water(ray: Ray) -> Pixel {
+fn trace_from_water(ray: Ray) -> Pixel {
     let t_water = meet_water(ray, -1.0, VERY_FAR_M);
     let limit = select(VERY_FAR_M, t_water, t_water >= 0.0);
     let wet = trace_scene(ray, 0.0, limit);
@@ -184,7 +184,7 @@ fn camera_hits_main(@builtin(global_invocation_id) id: vec3u) {
     let ray = pixel_ray(id.x, id.y + view.first_row);
     notes = 0.0;
     var pixel: Pixel;
-    if over_water(ray.origin) >= 0.0 { pixel = look_from_air(ray); } else { pixel = look_from_water(ray); }
+    if over_water(ray.origin) >= 0.0 { pixel = trace_from_air(ray); } else { pixel = trace_from_water(ray); }
     let seen = pixel.seen.receiver >= 0;
     var receiver = f32(pixel.seen.receiver);
     if seen && over_water(pixel.position) > SURFACE_TOLERANCE_M { receiver = -2.0 - receiver; }

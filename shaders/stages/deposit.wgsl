@@ -62,7 +62,7 @@ fn deposit_beam(cell: vec2u, half: u32) -> CellSums {
         push_split(beam_index);
         return CellSums(0.0, 0.0, sums.losses);
     }
-    if ends_nowhere(b) {
+    if hits_nothing(b) {
         sums.losses.missed = b.transmitted;
         return sums;
     }

@@ -125,7 +125,7 @@ struct Piece {
 
 fn piece_of(b: Beam, k: i32, is_unresolved: bool) -> Piece {
     var piece = Piece(b.receiver[k], b.uv, b.t);
-    if b.receiver[k] == NO_RECEIVER || (!is_unresolved && ends_nowhere(b)) {
+    if b.receiver[k] == NO_RECEIVER || (!is_unresolved && hits_nothing(b)) {
         piece.receiver = NO_RECEIVER;
         return piece;
     }
@@ -248,7 +248,7 @@ fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     let above = max(split.level, 1u) - 1u;
     // A part has 4^−level of a beam's flux, and a workgroup at most 256 of them (twice that for the parts of whole beams).
     finer = min(f32(1u << (2u * above)), light.energy_scale / light.triangle_scale);
-    straight = light.kind == POINT;
+    is_direct = light.kind == POINT;
     let count = atomicLoad(&split_queue[QUEUE_COUNT + above]);
     // Whether the next level fits is decided from this level's count before anything is queued, so that the same pieces stay unresolved in
     // every run.

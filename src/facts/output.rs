@@ -23,7 +23,7 @@ pub struct OutputFacts {
     /// Sky irradiance that is added to an irradiance map of the floor, W/m².
     pub sky_w_m2: [f64; 3],
     /// Layers of objects that the scene requests; `quality.layers` of the facts is 1 where the output uses no more.
-    pub asked_layers: u32,
+    pub requested_layers: u32,
 }
 
 /// The camera.
@@ -68,7 +68,7 @@ impl OutputFacts {
             receiver: map.map(|map| map.receiver),
             receiver_layer: map.map_or(0, |map| map.layer),
             sky_w_m2: [0.0; 3],
-            asked_layers: scene.quality.layers,
+            requested_layers: scene.quality.layers,
         }
     }
 

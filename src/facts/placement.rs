@@ -191,7 +191,7 @@ pub struct LevelBox {
 }
 
 impl LevelBox {
-    /// The box of `mesh`, placed as `object`, for light that goes along local unit direction `flat`.
+    /// The box of `mesh`, placed as `object`, for light along the local unit direction `flat` (under flat water).
     pub fn new(object: &ObjectFacts, mesh: &Mesh, flat: DVec3, layers: u32) -> Self {
         let texels = object.map_texels;
         let mesh_from_local = object.local_from_mesh.inverse();

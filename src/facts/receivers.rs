@@ -66,7 +66,7 @@ impl ReceiverFacts {
         }
     }
 
-    /// Indices of objects that can be struck by light under water.
+    /// Indices of objects that light under water can hit.
     pub fn wet_objects(&self) -> impl Iterator<Item = usize> + '_ {
         self.objects
             .iter()
@@ -77,7 +77,7 @@ impl ReceiverFacts {
 }
 
 impl SceneFacts {
-    /// Indices of objects that can be struck by light under water.
+    /// Indices of objects that light under water can hit.
     pub fn wet_objects(&self) -> impl Iterator<Item = usize> + '_ {
         self.receivers.wet_objects()
     }

@@ -97,7 +97,7 @@ impl Source {
 
     /// Apparent height of a point light above `y_m`, seen from straight below through flat water: h + d/n. For a light under water its
     /// true height above `y_m`.
-    pub fn seeming_height_m(&self, y_m: f64, ior: f64) -> f64 {
+    pub fn apparent_height_m(&self, y_m: f64, ior: f64) -> f64 {
         match *self {
             Self::Sun { .. } => f64::INFINITY,
             Self::Submerged { position_m } => position_m.y - y_m,
@@ -126,7 +126,7 @@ impl Source {
                     DVec2::new(middle_m.x - position_m.x, middle_m.z - position_m.z).length();
                 within(
                     sideways
-                        .hypot(self.seeming_height_m(middle_m.y, ior))
+                        .hypot(self.apparent_height_m(middle_m.y, ior))
                         .powi(2),
                 )
             }

@@ -20,7 +20,7 @@ const CELLS_PER_WAVE: f64 = 8.0;
 const CLOSE_CELLS: f64 = 4.0;
 
 /// Projected area of an object's box, as a share of its largest face, below which it is only rounding error.
-const NOTHING: f64 = 1e-6;
+const NEGLIGIBLE: f64 = 1e-6;
 /// Least height of a point light over the water at rest for its solid angle, as a share of the height that counts as close.
 const LEAST_HEIGHT: f64 = 1e-9;
 
@@ -49,7 +49,7 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     let blocked = Blocked::new(facts, meshes);
     let mut all = Vec::new();
     all.extend(scattering(&resolved.scene.water.scattering_per_m));
-    all.extend(mended_meshes(facts, meshes));
+    all.extend(repaired_meshes(facts, meshes));
     all.extend(dry_parts(facts, &blocked));
     all.extend(thin_objects(facts, meshes));
     all.extend(left_out_by_method(facts, &blocked));
@@ -76,7 +76,7 @@ fn scattering(scattering_per_m: &[f64; 3]) -> Option<Warning> {
 }
 
 /// Repairs and clamped values that were found when meshes were read; once per mesh, at its first object.
-fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
+fn repaired_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
     let is_first = |index: usize| {
         let id = &meshes[index].id;
         meshes[..index].iter().all(|mesh| mesh.id != *id)
@@ -164,7 +164,7 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
             let texel_m = level_box.density_per_flux.powf(-0.5);
             let across = object.across(&meshes[index], level_box.axis);
             // A sheet seen edge-on blocks nothing.
-            if across.width_m >= texel_m || across.area_m2 <= NOTHING * across.largest_m2 {
+            if across.width_m >= texel_m || across.area_m2 <= NEGLIGIBLE * across.largest_m2 {
                 continue;
             }
             let middle_m = object.wet_middle();

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::GpuContext;
 use super::pool::KEEP_FRAMES;
 
-/// Places begin at multiples of this: no device asks for more.
+/// Alignment of places, bytes: no device requires more.
 const ALIGNMENT: u64 = 256;
 /// Bytes of a buffer of places.
 const BUFFER_BYTES: u64 = 1 << 16;

@@ -117,7 +117,7 @@ impl<P: Program> Planned<P> {
 ///
 /// - `passes`: all passes that may run, in order;
 /// - `awaited`: the requested slots;
-/// - `there`: slots whose content is cached from an earlier frame;
+/// - `available`: slots whose content is cached from an earlier frame;
 /// - `kept_bytes`: size of a slot that a cache keeps.
 ///
 /// # Errors
@@ -126,13 +126,13 @@ pub fn plan<P: Program>(
     passes: &[&'static PassDesc<P>],
     facts: &P::Facts,
     awaited: &BTreeSet<&'static SlotDesc<P>>,
-    there: &BTreeSet<&'static SlotDesc<P>>,
+    available: &BTreeSet<&'static SlotDesc<P>>,
     kept_bytes: impl Fn(&SlotDesc<P>) -> u64,
 ) -> Result<Planned<P>, PlanError> {
     let mut awaiting = awaited.clone();
     let (mut kept, mut absent) = (Vec::new(), Vec::new());
     for pass in passes.iter().copied().rev() {
-        match verdict(pass, facts, &awaiting, there) {
+        match verdict(pass, facts, &awaiting, available) {
             Ok(reason) => {
                 awaiting.extend(pass.reads.iter().chain(pass.reads_if_present));
                 kept.push((pass, reason));
@@ -142,7 +142,7 @@ pub fn plan<P: Program>(
     }
     kept.reverse();
     absent.reverse();
-    check_order(&kept, there)?;
+    check_order(&kept, available)?;
     let mut planned = Planned {
         slots: held(&kept, facts, kept_bytes),
         passes: kept,
@@ -171,7 +171,7 @@ fn verdict<P: Program>(
     pass: &'static PassDesc<P>,
     facts: &P::Facts,
     awaiting: &BTreeSet<&'static SlotDesc<P>>,
-    there: &BTreeSet<&'static SlotDesc<P>>,
+    available: &BTreeSet<&'static SlotDesc<P>>,
 ) -> Result<String, String> {
     let reason = (pass.wanted)(facts)?;
     let names = |slots: &[&'static SlotDesc<P>]| {
@@ -180,7 +180,7 @@ fn verdict<P: Program>(
     };
     let (mut missing, mut kept) = (Vec::new(), Vec::new());
     for slot in pass.writes {
-        if there.contains(slot) {
+        if available.contains(slot) {
             kept.push(*slot);
         } else {
             missing.push(*slot);
@@ -201,13 +201,13 @@ fn verdict<P: Program>(
 /// Checks that every slot a pass reads comes from the host, is cached, or is written by an earlier pass.
 fn check_order<P: Program>(
     kept: &[(&'static PassDesc<P>, String)],
-    there: &BTreeSet<&'static SlotDesc<P>>,
+    available: &BTreeSet<&'static SlotDesc<P>>,
 ) -> Result<(), PlanError> {
-    let mut there = there.clone();
+    let mut available = available.clone();
     for (pass, _) in kept {
         let missing = pass.reads.iter().find(|slot| {
             let from_host = matches!(slot.origin, Origin::Host | Origin::HostCached);
-            !from_host && !there.contains(*slot)
+            !from_host && !available.contains(*slot)
         });
         if let Some(missing) = missing {
             return Err(PlanError::NothingWrites {
@@ -215,7 +215,7 @@ fn check_order<P: Program>(
                 slot: missing.name,
             });
         }
-        there.extend(pass.writes);
+        available.extend(pass.writes);
     }
     Ok(())
 }

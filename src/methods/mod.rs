@@ -156,7 +156,7 @@ pub fn all_passes() -> Vec<&'static Pass> {
 /// The facts of a scene that [`resolve`] has accepted. Their only warnings are those about lights that are left out.
 ///
 /// # Errors
-/// Those of [`SceneFacts::of`], and a method that cannot make what the scene asks for.
+/// Those of [`SceneFacts::of`], and a method that cannot render the scene.
 pub fn facts(resolved: &ResolvedScene) -> Result<SceneFacts, SceneError> {
     supported(resolved, SceneFacts::of)
 }

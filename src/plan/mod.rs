@@ -31,7 +31,7 @@ pub const EMPTY_LIST_BYTES: u64 = 256;
 /// Bytes of the arguments of indirect dispatches.
 pub const INDIRECT_BYTES: u64 = 12;
 
-/// The shortest list of passes that makes what a scene asks for, and why.
+/// The shortest list of passes that renders a scene's output, and why each runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Plan {
     /// Passes in the order they run.
@@ -210,7 +210,7 @@ pub fn plan(
         .iter()
         .filter(|key| !cached.has_level_map(key))
         .count();
-    let there = if missing == 0 {
+    let available = if missing == 0 {
         BTreeSet::from([&LEVEL_MAPS])
     } else {
         BTreeSet::new()
@@ -222,7 +222,13 @@ pub fn plan(
             slot.bytes(facts)
         }
     };
-    let graph = graph::plan(passes, facts, &awaited(facts, wanted), &there, kept_bytes)?;
+    let graph = graph::plan(
+        passes,
+        facts,
+        &awaited(facts, wanted),
+        &available,
+        kept_bytes,
+    )?;
     let report = report(&graph, facts, wanted, missing);
     Ok(FramePlan {
         wanted,
@@ -387,7 +393,7 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     } else if facts.output.camera.is_none() && facts.output.sky_w_m2.iter().all(|&e| e == 0.0) {
         add("sky", "output.include_sky is false");
     }
-    if facts.output.asked_layers > facts.quality.layers {
+    if facts.output.requested_layers > facts.quality.layers {
         add(
             "layers",
             "the output is a map of the floor: the objects' maps are unused",

@@ -520,7 +520,7 @@ impl Renderer {
                 return Err(RenderError::OverBudget {
                     what: format!(
                         "buffer `{name}` (the device's limit for one binding{})",
-                        what_helps(plan, name)
+                        size_advice(plan, name)
                     ),
                     needed_bytes: planned.bytes,
                     budget_bytes: limit,
@@ -532,7 +532,7 @@ impl Renderer {
 }
 
 /// Advice on how to make a buffer smaller, if it holds maps of objects.
-fn what_helps(plan: &FramePlan, slot: &str) -> &'static str {
+fn size_advice(plan: &FramePlan, slot: &str) -> &'static str {
     let holds_maps = ["flux", "irradiance"].contains(&slot);
     let has_objects = plan.graph.slot(&GEOMETRY).is_some();
     if holds_maps && has_objects {

@@ -264,7 +264,7 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
             return Some(even(transmittance * area_m2));
         };
         let middle_m = object.wet_middle();
-        let rise_m = light.source.seeming_height_m(middle_m.y, light.band.ior);
+        let rise_m = light.source.apparent_height_m(middle_m.y, light.band.ior);
         let distance_m = (middle_m - position_m).with_y(rise_m).length();
         let radius_m = 0.5 * (object.max - object.min).length();
         let near_m = (distance_m - radius_m).max(0.1 * radius_m).max(1e-6);
@@ -283,7 +283,7 @@ fn lamp_on_floor(light: &BeamSet, rect: &Rect, y_m: f64, ior: f64, texels: f64) 
         .source
         .position_m()
         .map_or(DVec2::ZERO, |p| DVec2::new(p.x, p.z));
-    let height_m = light.source.seeming_height_m(y_m, ior).max(1e-6);
+    let height_m = light.source.apparent_height_m(y_m, ior).max(1e-6);
     let (low, high) = (rect.min - foot_m, rect.max - foot_m);
     let corner = DVec3::new(low.x, -height_m, low.y);
     let (along_x, along_z) = (DVec3::X * (high.x - low.x), DVec3::Z * (high.y - low.y));

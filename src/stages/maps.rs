@@ -57,7 +57,7 @@ impl MapLayout {
                 let maps = ObjectMaps {
                     first: end,
                     texels: side * side,
-                    layers: asked_layers(facts, number),
+                    layers: requested_layers(facts, number),
                 };
                 end += maps.layers.len() as u64 * maps.texels;
                 maps
@@ -128,7 +128,7 @@ impl MapLayout {
 
 /// Layers of an object that the output reads: a camera reads all, an irradiance map is one. A method that does not light meshes by hits
 /// needs all of them, because it lights every object that its rays hit.
-fn asked_layers(facts: &SceneFacts, object: usize) -> Range<u32> {
+fn requested_layers(facts: &SceneFacts, object: usize) -> Range<u32> {
     if !facts.method.lights_meshes_by_hits {
         return 0..facts.quality.layers;
     }
