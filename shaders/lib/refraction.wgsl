@@ -19,7 +19,7 @@ fn reflect_direction(direction: vec3f, normal: vec3f) -> vec3f {
     return direction - normal * (2.0 * dot(direction, normal));
 }
 
-// Unit normal (up) of y = h(x, z) with slopes ∂h/∂x and ∂h/∂z, at most 10¹⁸ so that their squares are numbers.
+// Unit normal (up) of y = h(x, z) with slopes ∂h/∂x and ∂h/∂z, at most 10¹⁸ so that their squares are finite.
 fn normal_from_slope(slope_x: f32, slope_z: f32) -> vec3f {
     return normalize(vec3f(-slope_x, 1.0, -slope_z));
 }

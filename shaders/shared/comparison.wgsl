@@ -6,7 +6,7 @@ struct Comparison {
     coarse_width: u32,
     coarse_height: u32,
     first_fine: u32,   // first texel in `irradiance`
-    first_coarse: u32, // first texel in the flux sums of the coarse light
+    first_coarse: u32, // first texel in the flux sums of the coarse beam set
     receiver: u32,     // receiver of the coarse map
     blocks: u32,       // 1: whole blocks of fine texels are compared with coarse texels; 0: fine texels with the interpolated coarse map
     first_group: u32,  // first workgroup

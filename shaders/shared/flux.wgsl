@@ -49,7 +49,7 @@ fn flux_counts(texel: u32, channel: u32, channels: u32) -> f32 {
     return f32(words.y) * 4294967296.0 + f32(words.x);
 }
 
-// The counts of a texel's three channels, which may be one.
+// The counts of a texel's three channels; with one channel all three are equal.
 fn flux_colour(texel: u32, channels: u32) -> vec3f {
     var counts = vec3f(flux_counts(texel, 0u, channels));
     if channels == 3u {

@@ -1,10 +1,10 @@
 // The current beam set and the water it falls on; the uniform of all passes that trace a beam set.
 
 struct Light {
-    source: vec4f,             // of a sun the unit direction to it, of a point light its place, local m
+    source: vec4f,             // sun: unit direction to it; point light: its position, local m
     extinction_per_m: vec4f,   // c per channel
     window_min: vec2f,         // lower corner of the grid, in units of grid_place()
-    cell: vec2f,               // size of a grid cell, in the same
+    cell: vec2f,               // size of a grid cell, in the same units
     cells: u32,                // cells along each side of the window
     wave_count: u32,
     object_count: u32,
@@ -17,8 +17,8 @@ struct Light {
     layers: u32,               // receivers of an object: its surfaces along the light, nearest first
     wide_texels: u32,          // footprints with more texels than this are shared by several workgroups
     triangle_scale: f32,       // workgroup counts per unit flux in the energy account
-    foot_m: vec2f,             // of a point light over the water: the local (x, z) around which the grid is finer; of a sun 0
-    bend_per_m2: f32,          // how much coarser the grid gets with the distance from there
+    foot_m: vec2f,             // point light over the water: the local (x, z) around which the grid is finer; sun: 0
+    bend_per_m2: f32,          // β of the grid's mapping: how fast cells grow with the distance from there, see vertex_m()
     kind: u32,                 // SUN, POINT or SUBMERGED
     objects_min_m: vec2f,      // lower corner of the water whose light can reach an object, local (x, z)
     objects_max_m: vec2f,      // its upper corner, below the lower one where no object is under water

@@ -14,10 +14,10 @@ struct Resolve {
 
 @group(0) @binding(13) var<uniform> resolve: Resolve;
 
-// 1 / (area of a texel that lies at `texel` of the flux sums, m²).
+// 1 / (area of the texel with index `texel` in the flux sums, m²).
 fn density_at(texel: u32) -> f32 {
     if resolve.receiver_count == 0u { return resolve.density_per_flux; }
-    // The last receiver whose map begins here or before; a dry object's has no texels, and the next one begins where it does.
+    // The last receiver whose map begins at or before `texel`. A dry object's map has no texels, so the next map begins at the same place.
     var low = 1u;
     var high = resolve.receiver_count;
     while low < high {

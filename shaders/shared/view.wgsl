@@ -27,8 +27,8 @@ struct View {
     sky_transmittance: f32,
     sky_path_factor: f32,
     layers: u32,          // receivers of an object: its surfaces along the light, nearest first
-    sample_index: u32,    // samples that the picture already holds
-    sample_offset: vec2f, // of the ray from the pixel's middle, pixels
+    sample_index: u32,    // number of samples that the picture already holds
+    sample_offset: vec2f, // offset of the ray from the pixel's centre, pixels
 }
 
 @group(0) @binding(0) var<uniform> view: View;

@@ -9,7 +9,7 @@
 #import "shared/level_maps.wgsl"
 
 struct AirLight {
-    source: vec4f, // of a sun the unit direction to it, w 0; of a point light its place, local m, w 1
+    source: vec4f, // sun: unit direction to it, w 0; point light: its position, local m, w 1
     power: vec4f,  // irradiance of a plane facing the sun, W/m²; intensity of the point light, W/sr
 }
 

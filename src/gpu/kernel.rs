@@ -72,10 +72,10 @@ impl Kernel {
         &self.layout.bindings
     }
 
-    /// What `find` returns for each variable's name, bound; with a group of `groups` where that holds no textures.
+    /// Binds the resource that `find` returns for each variable's name. Uses a cached group of `groups` if there are no textures.
     ///
     /// # Errors
-    /// Where `find` has nothing for a variable, or not what it is.
+    /// When `find` has no resource for a variable, or one of another kind.
     pub fn bind<'a>(
         &self,
         gpu: &GpuContext,
@@ -111,7 +111,7 @@ pub struct RasterKernel {
 }
 
 impl RasterKernel {
-    /// Builds the pipeline of a vertex and a fragment entry point of `module`, which is assembled of shader file `path`.
+    /// Builds the pipeline of a vertex and a fragment entry point of `module`, which was assembled from shader file `path`.
     ///
     /// # Errors
     /// When there are no such entry points, or the device refuses them.
@@ -165,10 +165,10 @@ impl RasterKernel {
         })
     }
 
-    /// What `find` returns for each variable's name, bound; with a group of `groups` where that holds no textures.
+    /// Binds the resource that `find` returns for each variable's name. Uses a cached group of `groups` if there are no textures.
     ///
     /// # Errors
-    /// Where `find` has nothing for a variable, or not what it is.
+    /// When `find` has no resource for a variable, or one of another kind.
     pub fn bind<'a>(
         &self,
         gpu: &GpuContext,

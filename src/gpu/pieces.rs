@@ -80,8 +80,8 @@ pub fn next_size(groups: u64, ms: f64) -> u64 {
     ((groups as f64 * factor) as u64).max(1)
 }
 
-/// The shader with entry point `entry` reading its builtins from the uniform [`PIECE`]: `workgroup_id` and `global_invocation_id`
-/// count from the start of the whole dispatch, `num_workgroups` is that of the whole dispatch.
+/// The shader text with entry point `entry` rewritten to run in pieces, by means of the uniform [`PIECE`]: `workgroup_id` and
+/// `global_invocation_id` count from the start of the whole dispatch, `num_workgroups` is that of the whole dispatch.
 ///
 /// # Errors
 /// When `entry` is not there, or its parameters cannot be read.

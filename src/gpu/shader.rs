@@ -1,7 +1,7 @@
 //! WGSL: `#import`, and reflection of the resources that an entry point binds.
 //!
-//! `#import "path"` on a line of its own pastes a file once per module, wherever it is named first; an unknown path is an
-//! error. There are no conditions and no renaming.
+//! `#import "path"` on a separate line pastes a file once per module, at the first import. An unknown path is an error. There are no
+//! conditions and no renaming.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -338,7 +338,7 @@ fn texture_access(
                 (true, false) => Storage::ReadOnly,
                 _ => Storage::WriteOnly,
             },
-            // Those that every WebGPU device can store to and that passes use.
+            // Formats that every WebGPU device can store to and that passes use.
             format: match format {
                 naga::StorageFormat::R32Float => Format::R32Float,
                 naga::StorageFormat::R32Uint => Format::R32Uint,

@@ -121,7 +121,7 @@ impl Timing {
             usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        // A submission of its own: resolving in the one that wrote the queries gives zeros on some Vulkan drivers.
+        // A separate submission: resolving in the submission that wrote the queries gives zeros on some Vulkan drivers.
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -130,7 +130,7 @@ pub struct PassDesc<P: Program> {
     pub writes: &'static [&'static SlotDesc<P>],
     /// Uniform variables that its steps supply: name, and layout of the struct.
     pub uniforms: &'static [(&'static str, Layout)],
-    /// Why it is in (`Ok`) or out (`Err`), as a sentence.
+    /// The reason why it runs (`Ok`) or not (`Err`), as a sentence.
     pub wanted: fn(&P::Facts) -> Result<String, String>,
     /// Its scope, and its dispatches and draws for one run.
     pub steps: Steps<P>,

@@ -108,7 +108,7 @@ impl<P: Program> Run<'_, P> {
     }
 }
 
-/// The steps of a beam set that is followed coarsely.
+/// The steps of a coarse beam set.
 pub type CoarseSteps<P> =
     fn(&<P as Program>::Facts, BeamSetRun, &<P as Program>::Facts) -> Vec<Step<P>>;
 

@@ -9,7 +9,7 @@ use crate::scene::Dial;
 use crate::scene::dials::KIND;
 use crate::scene::overrides::{self, Field, METHOD};
 
-/// The schema of `quality.method`: a word, or an object per method.
+/// The schema of `quality.method`: a method's name, or an object per method.
 pub fn schema() -> Schema {
     let names = ALL.map(|method| method.name);
     let word = ObjectBuilder::new()

@@ -111,7 +111,7 @@ impl LightSums {
         self.unresolved += terms[term::UNRESOLVED_COUNT];
     }
 
-    /// Share of the emitted flux that a term is, percent.
+    /// A term as a share of the emitted flux, percent.
     fn percent(&self, term: usize) -> f64 {
         if self.unit[term::EMITTED] > 0.0 {
             100.0 * self.unit[term] / self.unit[term::EMITTED]

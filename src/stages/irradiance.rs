@@ -1,4 +1,4 @@
-//! Irradiance — turns a light's flux sums into W/m², and adds them to the floor's map.
+//! Irradiance — converts a beam set's flux sums to W/m² and adds them to the irradiance maps.
 
 use super::gpu_values::vec4;
 use super::light::{Light, light_uniform};
@@ -140,7 +140,7 @@ fn resolve_steps(facts: &SceneFacts, set: BeamSetRun) -> Vec<Step> {
             first_texel: piece.first_texel,
             texel_count: piece.texels,
             first_output: piece.first_output,
-            // Every beam set adds to the floor's map, those of a light to its maps of objects.
+            // All beam sets add to the floor's map; the beam sets of a light add to its maps of objects.
             adds: u32::from(if is_floor {
                 index > 0
             } else {

@@ -73,7 +73,7 @@ const PIECES: u32 = 24;
 const MOST_LAMP_SR: f64 = 1024.0 * 2.0 * TAU;
 /// Least beam that is used for scales, sr: smaller ones would leave the range of f32, and their light is invisible.
 const LEAST_BEAM_SR: f64 = 1e-20;
-/// Largest solid angle per area of the octahedral square, sr, and half as much again for triangles bent over its edges.
+/// Largest solid angle per area of the octahedral square, sr, times 1.5 for triangles bent over its edges.
 const OCTAHEDRAL_SR: f64 = 1.5 * 5.196_152_422_706_632;
 
 /// Largest flux that one beam can carry from a light of unit power.
