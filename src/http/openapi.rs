@@ -9,7 +9,7 @@ use super::router;
 use crate::methods;
 use crate::scene::{MethodChoice, Scene};
 
-/// What the contract says besides the routes.
+/// The parts of the contract that are not routes.
 #[derive(OpenApi)]
 #[openapi(
     info(
@@ -38,14 +38,14 @@ pub(super) fn document() -> utoipa::openapi::OpenApi {
 pub fn openapi() -> utoipa::openapi::OpenApi {
     let mut contract = router::api().into_openapi();
     if let Some(components) = &mut contract.components {
-        // The scene's own schema of it is neutral: which methods there are is known above the scene.
+        // The scene module's own schema of `Method` is generic, because that module does not know the methods.
         let name = MethodChoice::name().into_owned();
         components.schemas.insert(name, methods::schema().into());
     }
     contract
 }
 
-/// The contract as YAML, as it stands in `openapi.yaml`.
+/// The contract as YAML, as in `openapi.yaml`.
 pub fn yaml() -> &'static str {
     static YAML: OnceLock<String> = OnceLock::new();
     YAML.get_or_init(|| {
