@@ -112,7 +112,8 @@ pub fn meshes(text: &str) -> Result<Vec<String>, CliError> {
 
 /// Runs the experiment and writes the results.
 ///
-/// # Errors An invalid name or list, a GPU that fails, a folder that cannot be written.
+/// # Errors
+/// An invalid name or list, a GPU that fails, a folder that cannot be written.
 pub fn run(args: &ExperimentArgs, config: &RenderConfig) -> Result<(), CliError> {
     let Which::LevelMap(args) = &args.which;
     let settings = Settings {

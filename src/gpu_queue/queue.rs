@@ -59,7 +59,8 @@ struct Shared {
 impl GpuQueue {
     /// Starts the thread. It builds its backend with `factory`, and rebuilds it after each loss.
     ///
-    /// # Errors If the operating system refuses a thread.
+    /// # Errors
+    /// If the operating system refuses a thread.
     pub fn start<F>(settings: QueueSettings, factory: F) -> io::Result<Self>
     where
         F: FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send + 'static,
@@ -97,7 +98,8 @@ impl GpuQueue {
     /// A place in the queue for a request that arrived at `arrival` and has looked up its meshes. It is taken before the scene is
     /// prepared.
     ///
-    /// # Errors [`JobError::QueueFull`] at once if there is no place; [`JobError::Unavailable`] or [`JobError::Cancelled`] if
+    /// # Errors
+    /// [`JobError::QueueFull`] at once if there is no place; [`JobError::Unavailable`] or [`JobError::Cancelled`] if
     /// nothing can run.
     pub fn place(&self, arrival: Instant) -> Result<Place, JobError> {
         let shared = &self.shared;
@@ -139,7 +141,8 @@ impl GpuQueue {
 
     /// Builds level maps of a mesh for later frames, and reports for each sun which maps are ready.
     ///
-    /// # Errors As [`GpuQueue::render`]. Level maps finished before the error stay.
+    /// # Errors
+    /// As [`GpuQueue::render`]. Level maps finished before the error stay.
     pub async fn warm(
         &self,
         mesh: Arc<Mesh>,

@@ -44,7 +44,8 @@ pub enum ServeError {
 ///
 /// It listens before the device is open, so that `/healthz` and `/readyz` answer meanwhile.
 ///
-/// # Errors If the address is taken, if no device can be opened at the start, or if the system refuses a resource. A device lost
+/// # Errors
+/// If the address is taken, if no device can be opened at the start, or if the system refuses a resource. A device lost
 /// later is rebuilt; the service goes on.
 pub async fn serve(
     render: RenderConfig,
@@ -109,7 +110,8 @@ where
 /// Serves on a bound socket until `stop` resolves. Then `/readyz` answers 503, `drain` passes, new connections are refused, and
 /// running requests are finished.
 ///
-/// # Errors If the socket fails.
+/// # Errors
+/// If the socket fails.
 pub async fn serve_on(
     listener: TcpListener,
     state: AppState,

@@ -220,7 +220,7 @@ fn fields_of_before_say_what_to_write_instead() {
         (
             "placement",
             json!("planes"),
-            "the word of `placement` as `method`",
+            "the value of `placement` as `method`",
         ),
         (
             "planes",
