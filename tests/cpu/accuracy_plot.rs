@@ -152,7 +152,7 @@ fn a_single_setting_can_be_drawn() {
 }
 
 #[test]
-fn an_error_of_zero_is_moved_and_said_so() {
+fn an_error_of_zero_is_moved_and_reported() {
     let settings = [
         (json!(1), 0.02, 5.0),
         (json!(2), 0.0, 9.0),

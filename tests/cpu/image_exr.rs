@@ -163,7 +163,7 @@ fn an_irradiance_map_fills_the_root_with_floats() {
 }
 
 #[test]
-fn what_half_cannot_hold_is_clamped_and_said() {
+fn values_beyond_half_are_clamped_and_reported() {
     let values = [70_000.0, -1e9, 65_504.0, 1e-9, 6e-8, 0.0];
     let frame = frame(
         6,

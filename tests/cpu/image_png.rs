@@ -120,7 +120,7 @@ fn irradiance_maps_are_shown_as_white_diffuse_surfaces() {
 }
 
 #[test]
-fn what_is_lost_is_said() {
+fn losses_are_reported() {
     let values = [[2.0, 0.0, 0.0], [1.0, 1.0, 1.0], [-0.5, 0.5, 0.5]];
     let mut frame = frame(
         3,

@@ -111,7 +111,7 @@ fn numbers_are_checked_against_their_range() {
 }
 
 #[test]
-fn what_is_wrong_with_a_method_is_told_at_its_place() {
+fn errors_of_a_method_are_reported_at_their_place() {
     let cases = [
         (json!("magic"), "/quality/method", "unknown method `magic`"),
         (

@@ -510,7 +510,7 @@ fn the_peak_counts_shared_memory_once() {
 }
 
 #[test]
-fn a_pass_that_nobody_feeds_is_an_error() {
+fn a_pass_without_its_source_is_an_error() {
     let facts = methods::facts(&scene_files::scene(pool())).unwrap();
     for gone in ["surface", "camera_hits", "hits"] {
         let mut list = default_passes();

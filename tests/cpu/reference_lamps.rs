@@ -373,7 +373,7 @@ fn suns_and_lamps_add_up() {
 }
 
 #[test]
-fn a_dry_table_sees_the_lamp_in_the_air_alone() {
+fn a_dry_table_is_lit_by_the_lamp_in_the_air_only() {
     let lights = json!([lamp([0.0, 3.0, 0.0]), lamp([0.0, -0.5, 0.0])]);
     let table = |lid: bool| {
         pool(Vec3::splat(0.5), lights.clone(), |v| {

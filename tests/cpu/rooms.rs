@@ -299,7 +299,7 @@ fn rooms_are_in_no_circle() {
 }
 
 #[test]
-fn nobody_but_the_waves_knows_what_water_is_made_up_of() {
+fn only_the_waves_know_how_water_is_represented() {
     for source in sources() {
         if source.room() == "waves" {
             continue;

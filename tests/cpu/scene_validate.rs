@@ -375,7 +375,7 @@ fn scales_per_axis_are_checked_one_by_one() {
 }
 
 #[test]
-fn limits_are_said_with_numbers() {
+fn limits_are_reported_with_numbers() {
     let limits = Limits {
         max_pixels: 100,
         max_objects: 1,

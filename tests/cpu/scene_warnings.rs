@@ -90,7 +90,7 @@ fn is_near(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn shadows_on_the_water_are_told_with_what_they_would_take() {
+fn shadows_on_the_water_are_warned_of_with_the_flux_they_would_block() {
     let plate = |y: f64| (PLATE, json!({ "translation_m": [0.3, y, -0.2] }));
     let dry = |light: Value, y: f64| {
         let found = warnings(&[light], &[plate(y)], &json!({}));
@@ -157,7 +157,7 @@ fn what_reaches_out_of_the_water_counts_with_its_dry_part() {
 }
 
 #[test]
-fn what_stays_below_the_crests_is_told_where_it_takes_light() {
+fn objects_in_the_waves_are_warned_of_with_the_flux_they_catch() {
     let flat = json!({});
     let at = |y: f64| {
         let plate = json!({ "translation_m": [0, y, 0] });
@@ -175,7 +175,7 @@ fn what_stays_below_the_crests_is_told_where_it_takes_light() {
 }
 
 #[test]
-fn planes_tell_what_objects_stop_twice() {
+fn planes_warn_of_light_that_objects_block_twice() {
     let planes = json!({ "method": "planes" });
     let two = |x: f64| {
         let objects = [
@@ -202,7 +202,7 @@ fn planes_tell_what_objects_stop_twice() {
 }
 
 #[test]
-fn lights_within_objects_and_at_the_water_tell_their_flux() {
+fn lights_within_objects_and_at_the_water_are_warned_of_with_their_flux() {
     let around = json!({ "translation_m": [0, -1, 0], "scale": 0.5 });
     let found = warnings(&[lamp([0.0, -1.0, 0.0])], &[("box", around)], &json!({}));
     is_near(unit_flux(&found, "light_within_object"), 2.0 * TAU, 1e-9);
@@ -216,7 +216,7 @@ fn lights_within_objects_and_at_the_water_tell_their_flux() {
 }
 
 #[test]
-fn what_is_thinner_than_a_texel_is_told() {
+fn objects_thinner_than_a_texel_are_warned_of() {
     let thin = "object_thinner_than_texel";
     let under =
         json!({ "translation_m": [0, -1, 0], "rotation": [0, 0.382_683_432, 0, 0.923_879_533] });
@@ -261,7 +261,7 @@ fn what_is_thinner_than_a_texel_is_told() {
 }
 
 #[test]
-fn what_was_left_out_of_a_mesh_is_told_once_and_stops_nothing() {
+fn parts_left_out_of_a_mesh_are_warned_of_once_and_block_nothing() {
     let under = json!({ "translation_m": [0, -1, 0] });
     let twice = [(MENDED, under.clone()), (MENDED, under.clone())];
     let found = warnings(&[sun(90.0)], &twice, &json!({}));
@@ -275,7 +275,7 @@ fn what_was_left_out_of_a_mesh_is_told_once_and_stops_nothing() {
 }
 
 #[test]
-fn many_objects_share_the_rays_that_look_for_their_shadows() {
+fn many_objects_share_the_rays_that_sample_their_shadows() {
     let plate = json!({ "translation_m": [0, 1, 0], "scale": 0.5 });
     let many = vec![(PLATE, plate); 256];
     let found = warnings(&[sun(90.0)], &many, &json!({}));

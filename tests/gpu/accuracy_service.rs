@@ -86,7 +86,7 @@ async fn a_study_has_figures_plots_and_pictures() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn the_accept_header_chooses_what_a_study_is_told_in() {
+async fn the_accept_header_selects_the_format_of_a_study() {
     let service = default_service().await;
     for (media_type, starts_as) in [
         ("text/markdown", b"#".as_slice()),
@@ -261,7 +261,7 @@ async fn a_client_that_leaves_makes_room_for_the_next() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_wanted_error_is_turned_into_dials_by_render_and_plan() {
+async fn a_target_error_is_turned_into_dials_by_render_and_plan() {
     let service = default_service().await;
     let wanted = scene(&[("/quality", json!({ "target_error": 0.1 }))]);
     let (_, stats) = service.render_json(&wanted).await;
@@ -288,7 +288,7 @@ async fn a_wanted_error_is_turned_into_dials_by_render_and_plan() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn wishes_without_sense_are_refused() {
+async fn targets_without_sense_are_refused() {
     let service = default_service().await;
     for (quality, pointer) in [
         (

@@ -158,7 +158,7 @@ fn a_steep_sea_under_a_low_sun_closes() {
 }
 
 #[test]
-fn cells_too_coarse_for_the_waves_are_told_with_the_flux_through_them() {
+fn cells_too_coarse_for_the_waves_are_warned_of_with_the_flux_through_them() {
     // The lamp's window is small, so that its cells are fine enough; the sun's are not.
     let scene = json!({
         "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 0.5 }] },

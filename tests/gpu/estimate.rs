@@ -185,7 +185,7 @@ fn in_the_dark_there_is_nothing_to_estimate() {
 }
 
 #[test]
-fn a_wanted_error_is_kept_and_not_overpaid() {
+fn a_target_error_is_met_and_not_overpaid() {
     // The fewest cells that would do, by doubling and halving between: what a person could find by trying.
     for (target, most_cells) in [("0.05", 91), ("0.02", 181), ("0.01", 256), ("0.003", 512)] {
         let map = sine_pool_with(&[("target_error", target)]);
@@ -203,7 +203,7 @@ fn a_wanted_error_is_kept_and_not_overpaid() {
 }
 
 #[test]
-fn a_wanted_error_that_is_large_is_kept_too() {
+fn a_large_target_error_is_met_too() {
     // With 64 cells these estimate three quarters of their true error.
     for name in ["steep_pool", "teapot_floor"] {
         for target in [0.25, 0.12] {
@@ -252,7 +252,7 @@ fn the_chosen_dials_give_the_same_bytes_when_asked_for_by_name() {
 }
 
 #[test]
-fn an_impossible_wish_is_answered_with_the_best_there_is() {
+fn an_impossible_target_is_answered_with_the_best_there_is() {
     let mut scene = boxes(
         &json!({ "kind": "irradiance_map", "receiver": "floor", "width": 32, "height": 32 }),
         &json!([{ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [1, 1, 1] }]),
@@ -288,7 +288,7 @@ fn more_time_buys_more_cells_and_a_smaller_predicted_error() {
 }
 
 #[test]
-fn choosing_comes_on_top_of_a_time_budget_and_is_told() {
+fn choosing_is_added_to_a_time_budget_and_reported() {
     let budget = || sine_pool_with(&[("time_budget_ms", "100")]).frame.stats;
     budget();
     let stats = budget();

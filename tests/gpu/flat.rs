@@ -95,7 +95,7 @@ fn every_index_of_refraction_and_depth_gives_the_closed_form() {
 }
 
 #[test]
-fn a_view_sees_the_same_irradiance() {
+fn a_view_shows_the_same_irradiance() {
     let resolved = scene_files::scene(json!({
         "water": { "absorption_per_m": [0.35, 0.07, 0.03] },
         "floor": { "depth_m": 2, "size_m": [30, 30] },
@@ -138,7 +138,7 @@ fn the_finest_water_is_as_even_as_any() {
 }
 
 #[test]
-fn a_grid_of_512_cells_runs_in_one_go_and_a_larger_one_in_pieces() {
+fn a_grid_of_512_cells_runs_in_one_dispatch_and_a_larger_one_in_pieces() {
     let mut renderer = harness::new_renderer(&RenderConfig::default());
     for (cells, in_pieces) in [(512, false), (1024, true)] {
         let resolved = scene_files::scene(json!({

@@ -47,7 +47,7 @@ fn the_hierarchy_over_instances_changes_no_bit() {
 }
 
 #[test]
-fn light_beside_the_objects_looks_for_none() {
+fn light_beside_the_objects_tests_no_instances() {
     let [from, to] = [
         "instance_nodes(count), may_meet)",
         "instance_nodes(count), true)",

@@ -361,7 +361,7 @@ fn instances_with_the_same_rotation_share_a_map() {
 }
 
 #[test]
-fn maps_in_the_way_are_moved_and_told() {
+fn maps_in_the_way_are_moved_and_reported() {
     // A small map, then a large one behind it: two large ones fit the budget, but not around the first where it lies.
     let budget = 8 << 20;
     assert!(2 * map_bytes(512) <= budget && budget < 2 * map_bytes(512) + map_bytes(256));

@@ -137,7 +137,7 @@ fn scenes_that_take_turns_upload_their_meshes_once() {
 }
 
 #[test]
-fn meshes_make_way_in_the_order_of_their_last_use_where_memory_is_short() {
+fn meshes_are_evicted_in_the_order_of_their_last_use_where_memory_is_short() {
     // Each takes some megabytes.
     let meshes: Vec<Arc<Mesh>> = (0..3).map(|step| grid(150 + step)).collect();
     let scenes: Vec<ResolvedScene> = meshes.iter().map(below_mesh).collect();

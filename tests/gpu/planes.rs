@@ -190,7 +190,7 @@ fn the_floor_gets_nearly_the_same_shadow() {
 }
 
 #[test]
-fn what_method_does_not_conserve_is_said() {
+fn light_that_a_method_does_not_conserve_is_reported() {
     let few = on_object("sphere", planes(4, "uniform"));
     let many = on_object("sphere", planes(201, "uniform"));
     println!("closure {:.2e} and {:.2e}", few.closure(), many.closure());

@@ -35,7 +35,7 @@ fn boxes() -> Value {
 }
 
 /// Share of the emitted flux that was torn.
-fn torn_share(map: &Map) -> f64 {
+fn unresolved_share(map: &Map) -> f64 {
     let warnings = map.stats.warnings.iter();
     let torn = warnings.filter(|w| w.code == "beams_torn");
     let flux_w: f64 = torn.filter_map(|w| w.flux_w).map(|f| f[0]).sum();
@@ -43,13 +43,13 @@ fn torn_share(map: &Map) -> f64 {
 }
 
 #[test]
-fn every_number_of_halvings_loses_nothing_and_tears_less() {
+fn every_number_of_halvings_loses_nothing_and_leaves_less_unresolved() {
     let mut torn = f64::INFINITY;
     for levels in 0..=8 {
         let mut scene = pool(boxes(), 48, levels);
         scene["water"]["absorption_per_m"] = json!([0.3, 0.06, 0.02]);
         let map = Map::of(scene);
-        let share = torn_share(&map);
+        let share = unresolved_share(&map);
         println!(
             "{levels} halvings: closes to {:.1e}, torn {share:.1e}",
             map.closure()
@@ -187,7 +187,7 @@ fn chequered() -> Vec<u8> {
 }
 
 #[test]
-fn what_the_queue_cannot_hold_is_torn_and_said() {
+fn pieces_that_the_queue_cannot_hold_are_unresolved_and_reported() {
     let mesh = scene_files::mesh_of(&chequered());
     let scene = pool(
         json!([{ "mesh": mesh.id, "translation_m": [0, -1.5, 0], "scale": 2.0 }]),

@@ -453,7 +453,7 @@ fn along_the_sea(down_m: f64) -> Value {
 }
 
 #[test]
-fn pixels_whose_way_along_the_waves_is_not_followed_to_its_end_are_told() {
+fn pixels_whose_path_along_the_waves_is_not_followed_to_its_end_are_warned_of() {
     let told = |scene: Value| -> Option<u64> {
         let frame = frame(scene);
         let mut warnings = frame.stats.warnings.iter();

@@ -103,7 +103,7 @@ fn a_coarse_light_that_overflows_narrow_sums_is_done_again() {
 }
 
 #[test]
-fn what_is_recorded_ahead_of_a_look_at_the_sums_gives_the_same() {
+fn commands_recorded_before_the_sums_are_read_give_the_same() {
     let estimating = |mut scene: Value| {
         scene["quality"]["estimate_error"] = json!(true);
         scene

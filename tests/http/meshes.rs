@@ -60,7 +60,7 @@ async fn the_same_bytes_have_the_same_id() {
 }
 
 #[tokio::test]
-async fn an_answer_tells_triangles_and_bounds() {
+async fn an_answer_has_triangles_and_bounds() {
     let service = Service::start().await;
     let info: MeshInfo = upload(&service, OBJ).await.json();
     assert_eq!(info.triangles, 4);
@@ -217,7 +217,7 @@ async fn an_obj_is_the_same_in_a_form_and_alone() {
 }
 
 #[tokio::test]
-async fn forms_that_are_none() {
+async fn bodies_that_are_not_forms() {
     let service = Service::start().await;
     let cases: [&[(&str, &str)]; 4] = [
         &[],
@@ -247,7 +247,7 @@ async fn forms_that_are_none() {
 }
 
 #[tokio::test]
-async fn meshes_that_are_none() {
+async fn bodies_that_are_not_meshes() {
     let service = Service::start().await;
     for (name, obj) in [
         ("empty", ""),

@@ -41,7 +41,7 @@ async fn failed(service: &Service, reply: &Reply, kind: ProblemKind) -> Problem 
 }
 
 #[tokio::test]
-async fn who_does_not_ask_gets_the_mesh_alone() {
+async fn an_upload_without_warm_gets_the_mesh_only() {
     let service = Service::start().await;
     let reply = upload(&service, "").await;
     assert_eq!(reply.status, 201);
@@ -152,7 +152,7 @@ async fn bad_parameters_are_refused_before_anything_is_stored() {
 }
 
 #[tokio::test]
-async fn every_bad_parameter_is_told() {
+async fn every_bad_parameter_is_reported() {
     let service = Service::start().await;
     let query = "?warm=-1,0&warm_texels=3&warm_ior=9&sun=1";
     let problem = upload(&service, query)
@@ -293,7 +293,7 @@ async fn a_warm_up_that_is_late_costs_no_mesh() {
 }
 
 #[tokio::test]
-async fn a_warm_up_that_takes_too_long_is_told_to_stop() {
+async fn a_warm_up_that_takes_too_long_is_cancelled() {
     let service = Service::start_queued(QueueSettings {
         waiting: 4,
         deadline: Duration::from_millis(500),
@@ -325,7 +325,7 @@ async fn a_client_that_leaves_cancels_its_warm_up() {
 }
 
 #[tokio::test]
-async fn maps_that_do_not_fit_are_told_with_figures() {
+async fn maps_that_do_not_fit_are_reported_with_figures() {
     let service = Service::start().await;
     service
         .control
