@@ -1,4 +1,4 @@
-//! Dials: what may be swept, and how it is written.
+//! Dials of a sweep: which are accepted, and their syntax.
 
 use caustica::config::Limits;
 use caustica::lab::study::dial::{Dial, DialError, Setting, dials, with_dials};

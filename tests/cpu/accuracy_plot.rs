@@ -1,4 +1,4 @@
-//! Plots: they hold what they should, in both formats, and refuse what cannot be drawn.
+//! Plots: their contents in both formats, and the refusal of what cannot be drawn.
 
 use caustica::lab::study::fit_orders;
 use caustica::lab::study::plot::{Plot, PlotError, convergence, error_against_time};

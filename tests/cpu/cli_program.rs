@@ -1,4 +1,4 @@
-//! The program itself: exit codes, what it says on stderr, and health of a service that is not ours.
+//! The program itself: exit codes, messages on stderr, and `health` of a foreign service.
 
 use std::io::{Read, Write};
 use std::net::TcpListener;

@@ -1,4 +1,4 @@
-//! The thesis's experiment without an adapter: what may be asked for, and the files made of what was found.
+//! The thesis's experiment without an adapter: accepted requests, and the files of results.
 
 use caustica::cli::experiment::{meshes, planes};
 use caustica::lab::experiment::{

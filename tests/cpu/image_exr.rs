@@ -145,7 +145,7 @@ fn an_irradiance_map_fills_the_root_with_floats() {
             70_000.1 + (x + 3 * y) as f32 + c as f32 * 0.1
         }),
     );
-    // Even if half is asked for.
+    // Even if half is requested.
     let encoded = write(&frame, ExrPixel::Half);
     assert_eq!(encoded.warnings, vec![]);
     let read = decode_exr(&encoded.bytes).expect("an EXR");

@@ -1,4 +1,4 @@
-//! Point lights without a GPU: what a scene may say, where their rays go, and the float64 truth against the closed form.
+//! Point lights without a GPU: validation, ray directions, and the float64 reference against the closed form.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::Limits;

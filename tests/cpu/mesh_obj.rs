@@ -1,4 +1,4 @@
-//! OBJ and MTL in: what is read, what is mended and said, what is refused and how.
+//! Reading OBJ and MTL: what is accepted, what is repaired with a warning, what is refused and how.
 
 use caustica::config::Limits;
 use caustica::mesh::{DEFAULT_ALBEDO, Mesh, MeshError, obj};

@@ -1,4 +1,4 @@
-//! The catalogue of shapes: each is what it says of itself, whole, outside out, and the same on every machine.
+//! The catalogue of shapes: each matches its description, is closed, faces outward, and is the same on every machine.
 
 use std::collections::BTreeSet;
 use std::sync::LazyLock;

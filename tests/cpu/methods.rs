@@ -1,4 +1,4 @@
-//! Methods: their dials, what a scene may say of them, and that nothing else in the program or its papers names them by hand.
+//! Methods: their dials, their choice in a scene, and that no other source file or document lists them by hand.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -240,7 +240,7 @@ fn fields_of_before_say_what_to_write_instead() {
         assert_eq!(issue.pointer, format!("/quality/{field}"));
         assert!(issue.accepted.starts_with(instead), "{issue}");
     }
-    // A slip of the pen is told as one, there and elsewhere.
+    // A misspelt name is reported as such, there and elsewhere.
     for scene in [
         json!({ "quality": { "water_cell": 3 } }),
         json!({ "floor": { "placement": 3 } }),

@@ -1,4 +1,4 @@
-//! Plans: a snapshot for every scene of the project, and nothing in them that a scene does not call for.
+//! Plans: a snapshot for every scene of the project, and no pass that a scene does not need.
 
 use std::path::PathBuf;
 
@@ -231,7 +231,7 @@ fn every_pass_is_in_or_out_with_a_reason() {
         let listed = passes.iter().filter(|pass| is_in(pass));
         assert!(listed.map(|pass| pass.name).eq(names(&plan)), "{name}");
     }
-    // Both ways to be out were looked at.
+    // Both reasons for absence were covered.
     assert!(refused > 0 && unread > 0, "{refused}, {unread}");
 }
 

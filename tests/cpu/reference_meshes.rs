@@ -1,4 +1,4 @@
-//! Meshes in the float64 truth: their shadows, their light, their place.
+//! Meshes in the float64 reference: shadows, light, placement.
 
 use std::sync::Arc;
 

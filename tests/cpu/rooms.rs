@@ -1,7 +1,7 @@
-//! The rooms of the house, which are the folders and files right under `src/`: which of them use which, read from the sources.
+//! Dependencies between the rooms (the folders and files directly under `src/`), read from the sources.
 //!
 //! A use is a path that starts at the root of the crate: `crate::…`, alone or in groups, or as many `super::` as lead there.
-//! Comments and texts do not count.
+//! Comments and strings are ignored.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What a scene's facts warn of before anything is rendered.
+//! Facts of a scene, and the warnings they give before anything is rendered.
 
 use caustica::facts::SceneFacts;
 use caustica::facts::source::Source;

@@ -1,4 +1,4 @@
-//! What may be asked of a scene: views with their layers, maps of floor and meshes.
+//! Outputs of a scene: views with their layers, maps of floor and meshes.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,4 @@
-//! Fields replaced from outside: which there are, and how their text becomes JSON.
+//! Fields replaced from outside: the list of fields, and how their text becomes JSON.
 
 use caustica::scene::overrides::{Field, apply, fields};
 use caustica::scene::{Output, Scene};

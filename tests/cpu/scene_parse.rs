@@ -1,4 +1,4 @@
-//! JSON to scene: what is accepted, and where and how a refusal points.
+//! JSON to scene: what is accepted, and the pointers and texts of refusals.
 
 use caustica::scene::{
     Camera, FloorWord, Issue, IssueKind, Light, Output, Receiver, Scale, Scene, SceneError, Wave,

@@ -1,4 +1,4 @@
-//! Meshes by id, and the hash of what is rendered.
+//! Meshes by id, and the hash of a scene.
 
 use std::sync::Arc;
 

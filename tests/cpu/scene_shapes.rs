@@ -1,4 +1,4 @@
-//! Values of the wrong shape in a scene: a table of what is wrong, where the refusal points, and what it says.
+//! Values of the wrong type in a scene: a table of inputs, with pointer and text of the refusal.
 
 use caustica::scene::IssueKind;
 

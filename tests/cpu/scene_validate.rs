@@ -1,4 +1,4 @@
-//! Ranges and limits of a scene: every rule is broken once, and obeyed at its very edge.
+//! Ranges and limits of a scene: every rule is broken once, and met exactly at its limit.
 
 use caustica::config::Limits;
 use caustica::scene::{Camera, Issue, IssueKind, Scene};

@@ -1,4 +1,4 @@
-//! What is left out is told with the flux concerned, against closed forms.
+//! Warnings about light that is left out state the flux concerned, against closed forms.
 
 use std::f64::consts::{PI, TAU};
 
@@ -114,13 +114,13 @@ fn shadows_on_the_water_are_warned_of_with_the_flux_they_would_block() {
         expected,
         0.05,
     );
-    // A raft that lies right on the water stops what falls on it.
+    // A raft directly on the water blocks what falls on it.
     is_near(dry(sun(50.0), 0.0), 50_f64.to_radians().sin(), 0.02);
     // Half of the plate's shadow falls beside the floor's window of 4 m.
     let beside = (PLATE, json!({ "translation_m": [4.0, 1.0, 0.0] }));
     let found = warnings(&[sun(90.0)], &[beside], &json!({}));
     is_near(unit_flux(&found, "dry_object_casts_no_shadow"), 0.5, 0.02);
-    // Under a point light what counts is how large the plate looks from there.
+    // Under a point light, the solid angle of the plate as seen from there counts.
     let from_m = DVec3::new(0.0, 2.5, 0.0);
     let corner = DVec3::new(-0.2, 1.0, -0.7) - from_m;
     let looks_sr = 2.0 * solid_angle(corner, DVec3::Z, DVec3::X).abs();
@@ -189,7 +189,7 @@ fn planes_warn_of_light_that_objects_block_twice() {
     is_near(unit_flux(&two(0.0), code), enters, 0.02);
     is_near(unit_flux(&two(0.4), code), 0.6 * enters, 0.03);
     assert!(unit_flux(&two(2.0), code) == 0.0);
-    // From under the water what counts is how large the upper plate looks, which hides part of the lower one.
+    // From under the water, the solid angle of the upper plate counts, which hides part of the lower one.
     let from_m = DVec3::new(0.0, -0.25, 0.0);
     let objects = [
         (PLATE, json!({ "translation_m": [0, -0.5, 0] })),
@@ -231,7 +231,7 @@ fn objects_thinner_than_a_texel_are_warned_of() {
         let found = warnings(&[sun(90.0)], &[solid], &json!({}));
         assert!(found.iter().all(|w| w.code != thin), "{found:?}");
     }
-    // A plate on its edge stops nothing.
+    // A plate on its edge blocks nothing.
     let upright = json!({ "translation_m": [0, -1, 0], "rotation": [0.707_106_781_186_547_5, 0, 0, 0.707_106_781_186_547_5] });
     let found = warnings(&[sun(90.0)], &[(PLATE, upright)], &json!({}));
     assert!(found.iter().all(|w| w.code != thin), "{found:?}");

@@ -1,4 +1,4 @@
-//! The shaders without an adapter: files, structs, twins and bindings against what the Rust side says of them.
+//! The shaders without an adapter: files, structs, twins and bindings against the Rust side.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -316,7 +316,7 @@ fn bindings_of_an_unknown_entry_point_are_an_error() {
     assert!(module.bindings("stages/hits.wgsl", "misses_main").is_err());
 }
 
-/// Slots are told apart by their names: two with the same name are the same.
+/// Slots are identified by their names: two with the same name are the same.
 #[test]
 fn slots_have_names_of_their_own() {
     let mut known: BTreeMap<&str, &'static Slot> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! The generated meshes: the files are what the generator writes, and the shapes are whole and face outward.
+//! The generated meshes: the files are what the generator writes, and the shapes are closed and face outward.
 
 #[path = "../../examples/make_teapot/meshes/mod.rs"]
 mod meshes;

@@ -1,4 +1,4 @@
-//! The truth about views and maps on objects, against closed forms, against the map on the floor, and against itself.
+//! The reference of views and of maps on objects, against closed forms, against the map on the floor, and against itself.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 

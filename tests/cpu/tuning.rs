@@ -1,4 +1,4 @@
-//! Choosing dials: from looks to cells, from a budget to cells, and the calibration behind it.
+//! Choosing dials: from trial renders to cells, from a budget to cells, and the calibration behind it.
 
 use std::convert::Infallible;
 
@@ -93,7 +93,7 @@ const TEAPOT_POOL: &Measured = &[
     (2048, 0.039, 0.03),
 ];
 
-/// True error and estimate with so many cells, between what was measured.
+/// True error and estimate with this number of cells, interpolated between measurements.
 fn between(measured: &Measured, cells: u32) -> (f64, f64) {
     let pair = measured
         .windows(2)

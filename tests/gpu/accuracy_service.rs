@@ -1,4 +1,4 @@
-//! Accuracy over HTTP with the real renderer: studies, and wishes for an error or a time.
+//! Accuracy over HTTP with the real renderer: studies, and targets for an error or a time.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -279,7 +279,7 @@ async fn a_target_error_is_turned_into_dials_by_render_and_plan() {
         plan["chosen"]["water_cells"], chosen["water_cells"],
         "plan and render choose alike"
     );
-    // Who asks for nothing is told nothing.
+    // Without a request for accuracy, nothing about it is reported.
     let plain = scene(&[]).to_string();
     let reply = service
         .post("/v1/plan", "application/json", "*/*", plain)

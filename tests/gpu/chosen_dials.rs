@@ -1,4 +1,4 @@
-//! What dials are chosen by: the settings that are told, and nothing that happens to be cached.
+//! Chosen dials depend on the documented settings only, not on what happens to be cached.
 
 use caustica::calibration::Calibration;
 use caustica::config::RenderConfig;

@@ -1,4 +1,5 @@
-//! What every method has to do, or to skip with a reason: the suite walks [`methods::ALL`] and knows no method by name.
+//! The conformance suite: tests that every method has to pass, or to skip with a reason. It walks [`methods::ALL`] and names no
+//! method.
 
 use caustica::accuracy::{convergence_order, metrics};
 use caustica::lab::hard_cases;

@@ -1,4 +1,4 @@
-//! Where the light goes: the account of every scene closes, and its terms are those of the maps, the closed form and the reference.
+//! Energy accounts: every scene's account closes, and its terms equal those of the maps, the closed form and the reference.
 
 use caustica::physics::fresnel::fresnel_transmittance;
 use caustica::reference::{self, ReferenceSettings};

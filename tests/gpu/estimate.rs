@@ -1,4 +1,4 @@
-//! A frame's estimate of its own error, and dials chosen for a wanted error or time, against the float64 reference.
+//! A frame's estimate of its own error, and dials chosen for a target error or time, against the float64 reference.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;
@@ -296,7 +296,7 @@ fn choosing_is_added_to_a_time_budget_and_reported() {
     let cells = chosen.water_cells.to_string();
     let by_name = sine_pool_with(&[("water_cells", &cells)]).frame.stats;
     println!("{:?} {:?}", stats.time_ms, by_name.time_ms);
-    // The look is a frame's light with half the cells; plans take microseconds.
+    // The trial render is a frame's light with half the cells; plans take microseconds.
     assert!(stats.time_ms.plan > 4.0 * by_name.time_ms.plan);
     let parts = stats.time_ms.plan + stats.time_ms.upload + stats.time_ms.gpu;
     assert!(parts <= stats.time_ms.total);

@@ -1,5 +1,5 @@
-//! Many objects: the hierarchy over them changes nothing but the time, maps go by the size on the picture, and each object's map has
-//! its own measure.
+//! Many objects: the hierarchy over them changes only the time, map sizes follow the size in the picture, and each object's map
+//! has its own scale.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;

@@ -1,4 +1,4 @@
-//! Point lights above and under water: closed forms, the reference, sums of lights, and the places where a light can hardly stand.
+//! Point lights above and under water: closed forms, the reference, sums of lights, and extreme positions.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::reference::closed_form::LampOverFlatWater;

@@ -1,5 +1,5 @@
-//! Level maps between frames: built once, found again, thrown out for others, built ahead, and gone with their mesh or their
-//! device; whatever happens, a frame has the bytes it would have had.
+//! Level maps between frames: built once, reused, evicted, built ahead, and freed with their mesh or device. The bytes of a frame
+//! never depend on this.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -104,7 +104,7 @@ fn building(frame: &Frame) -> Vec<u32> {
         .collect()
 }
 
-/// A renderer with room for level maps of so many MiB.
+/// A renderer with a level-map budget of this number of MiB.
 fn renderer_of_mib(level_map_budget_mib: u64) -> Renderer {
     new_renderer(&RenderConfig {
         level_map_budget_mib,
@@ -245,7 +245,7 @@ fn five_meshes_take_turns_in_the_room_for_two() {
             }
         }
     }
-    // Each of the fifteen but the last two has made way.
+    // All of the fifteen except the last two have been evicted.
     assert_eq!(evictions, 13);
     let total = small.level_map_cache();
     assert_eq!((total.hits, total.misses, total.evictions), (0, 15, 13));
@@ -260,7 +260,7 @@ fn five_meshes_take_turns_in_the_room_for_two() {
     }
 }
 
-/// Checks that an error tells the setting and both figures.
+/// Checks that an error names the setting and both figures.
 fn assert_over_budget(error: &RenderError, needed: u64, budget: u64) {
     let RenderError::OverBudget {
         what,

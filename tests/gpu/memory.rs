@@ -1,4 +1,4 @@
-//! What stays on the GPU between frames: never more than the budget, and nothing of freed buffers after some idleness.
+//! Memory kept on the GPU between frames: never above the budget, and freed buffers are released when idle.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Light placed on meshes by reference planes, and by an image of every slice: the thesis's own ways beside hits.
+//! Light placed on meshes by reference planes and by slice images (the thesis's own methods), compared with hits.
 
 use std::sync::{Arc, OnceLock};
 

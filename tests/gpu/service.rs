@@ -1,4 +1,4 @@
-//! The service with the real renderer: pictures, caches, and that no input does harm.
+//! The service with the real renderer: pictures, caches, and harmful inputs.
 
 use std::time::Duration;
 

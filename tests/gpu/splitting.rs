@@ -1,4 +1,4 @@
-//! Beams that straddle receivers: halved where they do, they give sharper shadows, the same bytes every time, and lose nothing.
+//! Splitting of beams that straddle receivers: it sharpens shadows, gives the same bytes every time, and loses no light.
 
 use caustica::accuracy::metrics;
 use caustica::reference::{self, ReferenceSettings};
@@ -34,7 +34,7 @@ fn boxes() -> Value {
     ])
 }
 
-/// Share of the emitted flux that was torn.
+/// Share of the emitted flux in unresolved pieces.
 fn unresolved_share(map: &Map) -> f64 {
     let warnings = map.stats.warnings.iter();
     let torn = warnings.filter(|w| w.code == "beams_torn");
@@ -202,7 +202,7 @@ fn pieces_that_the_queue_cannot_hold_are_unresolved_and_reported() {
     let said = frame.stats.warnings.iter();
     let said: Vec<_> = said.filter(|w| w.code == "beams_torn").collect();
     assert!(said[0].message.contains("queue was full"), "{said:?}");
-    // Which are torn does not depend on the queue's order.
+    // Which pieces are unresolved does not depend on the queue's order.
     let again = harness::render(&resolved);
     assert_eq!(frame.layers, again.layers);
     assert_eq!(frame.stats.energy, again.stats.energy);

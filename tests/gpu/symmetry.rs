@@ -1,4 +1,4 @@
-//! What must not matter does not: scale of the light, quarter turns, place in the world, order of adding suns.
+//! Symmetries: scale of the light, quarter turns, position in the world, order of adding suns.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,4 @@
-//! What the camera sees: radiance, refraction, Snell's window, layers, and which way is up.
+//! Views: radiance, refraction, Snell's window, layers, and orientation.
 
 use caustica::frame::Frame;
 use caustica::physics::fresnel::{fresnel_reflectance, fresnel_transmittance};

@@ -1,4 +1,4 @@
-//! A focus so strong that narrow flux sums wrap: the sun is followed again with wide ones, and nothing is lost.
+//! A focus so strong that narrow flux sums overflow: the light is computed again with wide sums, and nothing is lost.
 
 use caustica::accuracy::metrics::relative_l1;
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! Each bad request has its status and its problem, and does no harm to the next good one.
+//! Each bad request gets its status and problem, and does not affect the next good one.
 
 use axum::http::Method;
 use caustica::config::Limits;

@@ -1,4 +1,4 @@
-//! Meshes are stored, listed, found and forgotten.
+//! Meshes are stored, listed, found and deleted.
 
 use std::time::{Duration, Instant};
 
@@ -189,7 +189,7 @@ async fn a_mesh_that_is_deleted_while_its_scene_is_prepared_goes_after_the_rende
         between.iter().any(|event| event == "forget the mesh"),
         "{diary:?}"
     );
-    // After that nobody is left who could build anything for it.
+    // After that, no job is left that could build anything for it.
     let before = service.control.count("forget the mesh");
     service.assert_whole().await;
     let after = service.control.count("forget the mesh");

@@ -1,4 +1,4 @@
-//! Queue full, deadline, clients that leave.
+//! Full queue, deadline, clients that disconnect.
 
 use std::time::{Duration, Instant};
 

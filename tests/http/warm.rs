@@ -1,4 +1,4 @@
-//! Uploads that ask for level maps: what is built, what is refused, and that a warm-up that fails takes no mesh along.
+//! Uploads that request level maps: what is built, what is refused, and that the mesh is kept if the warm-up fails.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -77,7 +77,7 @@ async fn one_sun_is_warmed_with_the_defaults_of_a_scene() {
         ior: 1.333,
     };
     assert_eq!(service.control.warmed(), [(id.clone(), wanted.clone())]);
-    // Known already, and warmed all the same: the maps may have made way in the meantime.
+    // Stored already, but warmed again: the maps may have been evicted meanwhile.
     let again = upload(&service, "?warm=60,30").await;
     assert_eq!(again.status, 200);
     assert_eq!(again.json::<Uploaded>().warmed.unwrap().len(), 1);
@@ -104,7 +104,7 @@ async fn several_suns_and_all_parameters() {
 #[tokio::test]
 async fn bad_parameters_are_refused_before_anything_is_stored() {
     let service = Service::start().await;
-    // Query, the name that is told, and a word of what is accepted.
+    // Query, the reported name, and a word of what is accepted.
     let cases = [
         ("?warm=0,30", "warm", "above 0"),
         ("?warm=-5,30", "warm", "above 0"),
@@ -165,7 +165,7 @@ async fn every_bad_parameter_is_reported() {
             "{name}: {problem:?}"
         );
     }
-    // A long value is not told in full.
+    // A long value is not repeated in full.
     let query = format!("?warm={}", "9".repeat(5000));
     let reply = upload(&service, &query).await;
     reply.problem(ProblemKind::InvalidQuery);
