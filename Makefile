@@ -49,8 +49,7 @@ docs: deps
 FUZZ_SECONDS ?= 60
 
 # Fuzz the readers of scenes and meshes; inputs that break them are kept in fuzz/artifacts. The first build takes minutes.
-# Coverage is a stable option of the compiler, but the way cargo-fuzz asks for it is not: hence RUSTC_BOOTSTRAP. No sanitizer: there
-# is no unsafe code of ours to watch.
+# cargo-fuzz requests coverage by an unstable compiler flag: hence RUSTC_BOOTSTRAP. No sanitizer: our code has no unsafe blocks.
 fuzz: fuzz-deps
 	$(CARGO) run --release --locked --example fuzz_seeds -- fuzz/corpus
 	RUSTC_BOOTSTRAP=1 $(CARGO) fuzz run --sanitizer none obj -- -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=16384

@@ -129,7 +129,7 @@ pub struct CacheStats {
 pub struct EnergyAccount {
     /// Index into `lights`.
     pub light: u32,
-    /// Falls on the simulated piece of water; for a point light under water, leaves it in the simulated directions.
+    /// Falls on the simulated piece of water. For a point light under water: emitted in the simulated directions.
     pub emitted_w: [f64; 3],
     /// Lands on receiver maps.
     pub landed_w: [f64; 3],

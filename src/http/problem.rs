@@ -126,7 +126,7 @@ macro_rules! problem_sets {
 }
 
 problem_sets! {
-    /// Of routes that only read what is at hand.
+    /// Of routes that only read available data.
     CommonProblems = [Internal, DeadlinePassed];
     /// Of routes about one mesh.
     MeshProblems = [UnknownMesh, Internal, DeadlinePassed];

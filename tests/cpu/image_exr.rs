@@ -101,7 +101,7 @@ fn every_layer_comes_back_under_its_names() {
 
 /// Read with the library's plain RGBA interface, as a stranger would.
 #[test]
-fn strangers_see_the_picture_upright() {
+fn other_readers_see_the_picture_upright() {
     let (width, height) = (4_usize, 3_usize);
     let frame = frame(
         4,

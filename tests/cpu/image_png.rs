@@ -163,7 +163,7 @@ fn losses_are_reported() {
 }
 
 #[test]
-fn values_that_are_no_numbers_are_refused_with_their_place() {
+fn values_that_are_not_numbers_are_refused_with_their_place() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let frame = frame(
             4,

@@ -52,7 +52,7 @@ fn a_further_layer_takes_a_depth_and_a_normal_per_texel() {
 }
 
 #[test]
-fn what_is_there_is_a_hit() {
+fn a_cached_map_is_a_hit() {
     let mut cache = LevelMapCache::new(4 * SMALL);
     let a = key("a", 16);
     assert_eq!(frame(&mut cache, &[&a]), std::slice::from_ref(&a));
@@ -78,7 +78,7 @@ fn other_meshes_directions_and_sizes_are_other_maps() {
 }
 
 #[test]
-fn the_one_used_longest_ago_goes_first() {
+fn the_least_recently_used_map_is_evicted_first() {
     let mut cache = LevelMapCache::new(2 * SMALL);
     let (a, b, c) = (key("a", 16), key("b", 16), key("c", 16));
     for used in [&a, &b, &a, &c] {
@@ -322,7 +322,7 @@ struct Model {
 }
 
 #[test]
-fn the_cache_holds_what_was_asked_for_whatever_went_before() {
+fn the_cache_has_the_requested_maps_after_any_history() {
     const BUDGET: u64 = 200_000;
     let mut random = Random(3);
     let mut cache = LevelMapCache::new(BUDGET);

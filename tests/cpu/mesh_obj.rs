@@ -127,7 +127,7 @@ fn polygons_become_fans() {
 }
 
 #[test]
-fn lines_and_points_are_no_triangles() {
+fn lines_and_points_are_not_triangles() {
     let mesh = good(&format!(
         "{TRIANGLE}l 1 2 3\np 1\ncurv2 1 2\nf 1 2\nf 1\nf\n"
     ));
@@ -177,7 +177,7 @@ fn degenerate_and_doubled_triangles_are_left_out() {
 }
 
 #[test]
-fn thin_triangles_are_no_degenerate_ones() {
+fn thin_triangles_are_not_degenerate() {
     let mesh = good("v 0 0 0\nv 1000 0 0\nv 500 1e-5 0\nf 1 2 3\n");
     assert_eq!(mesh.triangles.len(), 1);
     assert_eq!(mesh.triangles[0].normals, [Vec3::Z; 3]);

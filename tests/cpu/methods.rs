@@ -186,7 +186,7 @@ fn errors_of_a_method_are_reported_at_their_place() {
 }
 
 #[test]
-fn what_is_no_choice_is_refused_by_the_reading() {
+fn values_that_are_not_a_choice_are_refused_on_reading() {
     for (method, pointer) in [
         (json!(3), "/quality/method"),
         (json!(null), "/quality/method"),
@@ -215,7 +215,7 @@ fn what_is_no_choice_is_refused_by_the_reading() {
 
 /// The fields that were in `quality` before methods had dials of their own.
 #[test]
-fn fields_of_before_say_what_to_write_instead() {
+fn removed_fields_report_what_to_write_instead() {
     for (field, value, instead) in [
         (
             "placement",

@@ -135,7 +135,7 @@ fn warnings_are_those_of_the_dials_that_are_rendered() {
 }
 
 #[test]
-fn what_cannot_be_rendered_cannot_be_prepared() {
+fn scenes_that_cannot_be_rendered_cannot_be_prepared() {
     // One more light in the air than the camera has room for; half a period earlier the waves are over it.
     let lamp = |x_m: f64, y_m: f64| json!({ "kind": "point", "position_m": [x_m, y_m, 0], "intensity_w_sr": [1, 1, 1] });
     let mut lights = vec![lamp(0.0, 1.0); 64];

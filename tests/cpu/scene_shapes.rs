@@ -355,7 +355,7 @@ const SHAPES: &[Refusal] = &[
 ];
 
 #[test]
-fn wrong_shapes_are_refused_with_place_and_cure() {
+fn wrong_types_are_refused_with_place_and_accepted_values() {
     for (text, pointer, detail, accepted) in SHAPES {
         let issue = refusal(text);
         assert_eq!(issue.pointer, *pointer, "{text}: {issue}");

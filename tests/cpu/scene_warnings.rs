@@ -134,7 +134,7 @@ fn shadows_on_the_water_are_warned_of_with_the_flux_they_would_block() {
 }
 
 #[test]
-fn what_reaches_out_of_the_water_counts_with_its_dry_part() {
+fn objects_that_reach_out_of_the_water_count_with_their_dry_part() {
     // A turned box: of the part above the water an eighth of the width is left.
     let upright = json!({ "translation_m": [0, 0.25, 0], "scale": [0.6, 1.5, 0.4] });
     let found = warnings(&[sun(90.0)], &[("box", upright.clone())], &json!({}));

@@ -135,7 +135,7 @@ fn coarse_trial_renders_that_underestimate_their_error_are_not_trusted() {
 }
 
 #[test]
-fn what_is_never_trusted_promises_only_what_is_safe() {
+fn an_untrusted_error_predicts_only_safe_targets() {
     for (target, most, expected) in [
         // Even twice the error stays under the target: what was looked at will do, no fewer.
         (0.5, 2048, (1024, true, 5)),
@@ -167,7 +167,7 @@ fn targets_that_cannot_be_met_are_reported_with_the_best_there_is() {
 }
 
 #[test]
-fn of_a_view_the_order_is_measured() {
+fn the_order_of_a_view_is_measured() {
     let view = Prospect {
         is_view: true,
         ..map(2048)
@@ -214,7 +214,7 @@ fn a_budget_gets_the_most_cells_it_pays_for() {
 }
 
 #[test]
-fn rungs_are_valid_and_keep_what_is_no_matter_of_light() {
+fn rungs_are_valid_and_keep_dials_that_do_not_concern_light() {
     let given = Quality {
         pixel_samples: 3,
         target_error: Some(0.01),
@@ -287,7 +287,7 @@ fn the_built_in_calibration_knows_every_pass() {
 }
 
 #[test]
-fn a_file_that_is_no_calibration_is_refused() {
+fn a_file_that_is_not_a_calibration_is_refused() {
     let good = serde_json::to_value(Calibration::default()).unwrap();
     let mut cases = vec![("{}".to_owned(), "missing field")];
     for (field, value, complaint) in [

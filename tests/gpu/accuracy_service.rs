@@ -108,7 +108,7 @@ async fn the_accept_header_selects_the_format_of_a_study() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn what_makes_no_sense_is_refused_with_its_place() {
+async fn invalid_requests_are_refused_with_their_place() {
     let service = default_service().await;
     let many: Vec<u32> = (16..49).collect();
     let grid = json!({ "water_cells": many[..9], "map_texels": many[..9] });

@@ -49,7 +49,7 @@ fn hard_scenes() -> impl Iterator<Item = &'static hard_cases::Case> {
 }
 
 #[test]
-fn methods_have_names_of_their_own_and_say_what_they_skip() {
+fn methods_have_unique_names_and_report_what_they_skip() {
     let known = cases();
     for (k, method) in methods::ALL.iter().enumerate() {
         let later = &methods::ALL[k + 1..];

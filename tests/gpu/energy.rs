@@ -50,7 +50,7 @@ fn every_scene_closes() {
 }
 
 #[test]
-fn what_landed_is_what_lies_on_the_map() {
+fn the_landed_flux_is_that_on_the_map() {
     for name in ["flat", "sine_pool"] {
         let resolved = scene_files::load(name, &[]);
         let map = Map::from(&resolved);

@@ -51,7 +51,7 @@ fn the_estimate_is_within_a_factor_of_two() {
 }
 
 #[test]
-fn so_it_is_where_few_cells_stand_beside_many_texels() {
+fn the_estimate_is_also_good_with_few_cells_and_many_texels() {
     // Texels are compared by quarters there, and the cells know little of the waves: 0.72 and 0.8 were measured.
     for name in ["steep_pool", "teapot_floor"] {
         let changes = [
@@ -79,7 +79,7 @@ fn so_it_is_where_few_cells_stand_beside_many_texels() {
 }
 
 #[test]
-fn it_changes_nothing_else() {
+fn the_estimate_changes_nothing_else() {
     let plain = sine_pool_with(&[("water_cells", "64")]);
     let judged = sine_pool_with(&[("water_cells", "64"), ("estimate_error", "true")]);
     assert!(plain.stats.accuracy.is_none());
@@ -140,7 +140,7 @@ fn every_output_and_any_number_of_suns_can_be_estimated() {
 }
 
 #[test]
-fn suns_do_not_get_into_each_others_estimate() {
+fn suns_do_not_affect_each_others_estimate() {
     let sun = |azimuth: f64, watts: f64| json!({ "kind": "sun", "elevation_deg": 60, "azimuth_deg": azimuth, "irradiance_w_m2": [watts, watts, watts] });
     let outputs = [
         |_| json!({ "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 96, "height": 96 }),

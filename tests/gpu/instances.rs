@@ -203,7 +203,7 @@ fn every_object_has_the_measure_of_its_own_map() {
 }
 
 #[test]
-fn an_irradiance_map_takes_no_heed_of_the_picture() {
+fn an_irradiance_map_ignores_the_picture() {
     let mut scene = instances_scene::scene(5);
     scene["output"] = json!({ "kind": "irradiance_map", "receiver": 0 });
     let plain = Map::of(scene.clone());

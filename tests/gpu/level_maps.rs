@@ -146,7 +146,7 @@ fn after_a_warm_up_the_first_frame_finds_its_map() {
 }
 
 #[test]
-fn a_warm_map_serves_all_that_see_it_alike_and_no_other() {
+fn a_warm_map_serves_all_scenes_with_the_same_key_and_no_other() {
     let mut shared = renderer();
     let mesh = pyramid(0.72);
     let none = CancellationToken::new();
@@ -222,7 +222,7 @@ fn several_suns_are_warmed_at_once() {
 }
 
 #[test]
-fn five_meshes_take_turns_in_the_room_for_two() {
+fn five_meshes_alternate_in_a_budget_for_two() {
     let budget = 2 << 20;
     assert!(2 * map_bytes(256) <= budget && budget < 3 * map_bytes(256));
     let mut small = renderer_of_mib(2);

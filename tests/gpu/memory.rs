@@ -105,7 +105,7 @@ fn planned_geometry(renderer: &mut Renderer, resolved: &ResolvedScene) -> u64 {
 }
 
 #[test]
-fn scenes_that_take_turns_upload_their_meshes_once() {
+fn alternating_scenes_upload_their_meshes_once() {
     let scenes = [below("teapot.obj"), below("box.obj")];
     let mut renderer = Renderer::new(&RenderConfig::default()).unwrap();
     let planned = scenes

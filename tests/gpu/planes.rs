@@ -93,7 +93,7 @@ fn smart_slicing_gives_the_same_bytes_with_fewer_planes() {
 }
 
 #[test]
-fn many_planes_come_to_what_hits_give() {
+fn many_planes_approach_the_result_of_hits() {
     let hit = on_object("sphere", json!({}));
     assert!(hit.stats.planes.is_empty());
     let mut last = f64::INFINITY;

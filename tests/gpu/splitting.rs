@@ -61,7 +61,7 @@ fn every_number_of_halvings_loses_nothing_and_leaves_less_unresolved() {
 }
 
 #[test]
-fn the_queues_order_does_not_show() {
+fn the_queues_order_does_not_change_the_result() {
     let scene = pool(boxes(), 128, 5);
     let first = Map::of(scene.clone());
     for _ in 0..3 {

@@ -226,7 +226,7 @@ async fn answered(error: RenderError, kind: ProblemKind) -> caustica::http::Prob
 }
 
 #[tokio::test]
-async fn what_facts_refuse_never_reaches_the_gpu_thread() {
+async fn scenes_refused_by_their_facts_never_reach_the_gpu_thread() {
     let service = Service::start().await;
     let mut scene = scenes::small();
     scene["quality"] = json!({ "method": "planes", "target_error": 0.01 });

@@ -122,7 +122,7 @@ async fn forgetting_comes_before_the_next_job() {
 }
 
 #[tokio::test]
-async fn what_a_waiting_render_builds_for_a_deleted_mesh_goes_too() {
+async fn maps_that_a_waiting_render_builds_for_a_deleted_mesh_are_freed_too() {
     let service = Service::start().await;
     let info: MeshInfo = upload(&service, OBJ).await.json();
     let path = format!("/v1/meshes/{}", info.id);

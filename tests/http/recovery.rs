@@ -35,7 +35,7 @@ async fn after_a_loss_the_job_runs_again_on_a_new_device() {
 }
 
 #[tokio::test]
-async fn what_caches_have_counted_outlives_their_device() {
+async fn counts_of_caches_outlive_their_device() {
     let service = Service::start().await;
     let cache = |hits, entries| CacheStats {
         hits,
