@@ -123,7 +123,7 @@ fn no_dial(method: &Method, name: &str) -> Issue {
     let others: Vec<&str> = others.map(|other| other.name).collect();
     match (meant(name, &own), others.is_empty()) {
         (Some(meant), _) => detail.push_str(&format!("; did you mean `{meant}`?")),
-        (None, false) => detail.push_str(&format!("; {} has", one_of(&others))),
+        (None, false) => detail.push_str(&format!("; it belongs to {}", one_of(&others))),
         (None, true) => {}
     }
     let accepted = match own.as_slice() {

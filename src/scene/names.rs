@@ -56,7 +56,8 @@ pub(super) fn moved(given: &str, fields: &[&str]) -> Option<(&'static str, Strin
     if given == "placement" {
         return Some((
             "it was removed; `method` alone selects how light is placed",
-            "the value of `placement` as `method`; instead of `hit`, no `method`".to_owned(),
+            "`method` with the value that `placement` had, or no `method` if that was `hit`"
+                .to_owned(),
         ));
     }
     if meant(given, fields).is_some() {

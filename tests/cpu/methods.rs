@@ -132,12 +132,12 @@ fn errors_of_a_method_are_reported_at_their_place() {
         (
             json!({ "planes": 3 }),
             "/quality/method/planes",
-            "method level_map has no dial `planes`; `planes` or `volumetric` has",
+            "method level_map has no dial `planes`; it belongs to `planes` or `volumetric`",
         ),
         (
             json!({ "kind": "volumetric", "slicing": "smart" }),
             "/quality/method/slicing",
-            "method volumetric has no dial `slicing`; `planes` has",
+            "method volumetric has no dial `slicing`; it belongs to `planes`",
         ),
         (
             json!({ "kind": "planes", "planes": 1 }),
@@ -220,7 +220,7 @@ fn removed_fields_report_what_to_write_instead() {
         (
             "placement",
             json!("planes"),
-            "the value of `placement` as `method`",
+            "`method` with the value that `placement` had",
         ),
         (
             "planes",
