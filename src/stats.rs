@@ -10,7 +10,7 @@ pub struct Stats {
     pub version: String,
     /// `blake3:…` of the canonical scene.
     pub scene_hash: String,
-    /// Where it ran.
+    /// The adapter it ran on.
     pub adapter: AdapterStats,
     /// The method that carried the light.
     pub method: MethodStats,
@@ -42,9 +42,9 @@ pub struct Stats {
 pub struct MethodStats {
     /// Its name, as in `quality.method`.
     pub name: String,
-    /// Where it was published.
+    /// Its publication.
     pub paper: String,
-    /// Whether the light that lands is what its rays carried; where not, open energy accounts are no defect.
+    /// Whether the light that lands is the light its rays carried. If not, an energy account that does not close is no defect.
     pub conserves_energy: bool,
 }
 
