@@ -14,14 +14,14 @@ use crate::scene::{MethodChoice, Scene};
 #[openapi(
     info(
         title = "Caustica",
-        description = "Renders water caustics: a scene in, a picture and what it cost out.\n\n\
+        description = "Renders water caustics: takes a scene, answers with a picture and its statistics.\n\n\
             Right-handed, Y up, metres, seconds, SI radiometry; angles in degrees; linear RGB. Unknown fields are errors. \
             Every failure is `application/problem+json` with a stable `type`; every answer carries `x-request-id`. \
             Any route may also answer 404, 405 and 503 (`urn:caustica:problem:deadline-passed`).",
         license(name = "MIT or Apache 2.0", identifier = "MIT OR Apache-2.0")
     ),
     tags(
-        (name = "render", description = "Scenes to pictures."),
+        (name = "render", description = "Rendering of scenes."),
         (name = "meshes", description = "Meshes that scenes refer to."),
         (name = "service", description = "Health, metrics, limits, contract.")
     ),

@@ -14,8 +14,8 @@ pub struct Quality {
     /// The method that carries light to the receivers: its name, or an object with the name as `kind` and the method's own dials.
     #[serde(skip_serializing_if = "MethodChoice::is_default")]
     pub method: MethodChoice,
-    /// Water cells along each side of a light's window (the rectangle of water that can light the receivers), 2 … 2048. Default
-    /// 256. The error falls with the square of this number.
+    /// Water cells along each side of a light's window (the water that can light the receivers), 2 … 2048. Default 256.
+    /// The error falls with the square of this number.
     #[serde(deserialize_with = "integer::<WaterCells, _>")]
     #[schema(minimum = 2, maximum = 2048)]
     pub water_cells: u32,

@@ -1,4 +1,4 @@
-//! `POST /v1/render`: a scene in, a picture out.
+//! `POST /v1/render`: renders a scene to a picture.
 
 use std::fmt::Write as _;
 use std::time::Instant;
