@@ -64,13 +64,13 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
     let format = files::format_of(&any_path)?;
     files::check_place(&any_path)?;
     let mut scene = scene_file::load(&args.scene, Some(format), limits)?;
-    let moments = moments(args, &scene.resolved, limits)?;
+    let frame_times = frame_times(args, &scene.resolved, limits)?;
     let mut missing: Vec<&(u32, f64)> = Vec::new();
-    for moment in &moments {
+    for moment in &frame_times {
         let (frame, time_s) = *moment;
         scene.resolved.scene.time_s = time_s;
         let path = args.output.path(frame);
-        if !(args.skip_existing && is_there(&path, &scene.resolved.hash())) {
+        if !(args.skip_existing && is_rendered(&path, &scene.resolved.hash())) {
             missing.push(moment);
         }
     }
@@ -100,19 +100,19 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
 }
 
 /// Every frame with its time, checked before the first is rendered.
-fn moments(
+fn frame_times(
     args: &AnimateArgs,
     resolved: &ResolvedScene,
     limits: &Limits,
 ) -> Result<Vec<(u32, f64)>, CliError> {
-    let moments: Vec<(u32, f64)> = args
+    let frame_times: Vec<(u32, f64)> = args
         .frames
         .frames()
         .iter()
         .map(|&frame| (frame, time_of(resolved.scene.time_s, frame, args.fps)))
         .collect();
     // Checking the last frame is enough: it is the latest, and frames differ only in time.
-    if let Some((_, time_s)) = moments.last() {
+    if let Some((_, time_s)) = frame_times.last() {
         let mut last = resolved.scene.clone();
         last.time_s = *time_s;
         methods::validate(&last, limits).map_err(|error| CliError::Scene {
@@ -120,11 +120,11 @@ fn moments(
             error,
         })?;
     }
-    Ok(moments)
+    Ok(frame_times)
 }
 
 /// Whether `path` is a complete picture of this scene at this time, by the scene's hash in its metadata.
-fn is_there(path: &Path, scene_hash: &str) -> bool {
+fn is_rendered(path: &Path, scene_hash: &str) -> bool {
     let Ok(bytes) = std::fs::read(path) else {
         return false;
     };
