@@ -254,7 +254,7 @@ fn orders(chapters: &[Chapter]) -> String {
         know the waves. The rest is not second order, and cannot be:\n\n\
         - `map_texels` of a view: between its texels a map is a straight line, but caustics are edges, bright without bound on one side.\n  \
           What blur of width w takes from an edge that rises as 1/√x falls with the first power of w or less.\n\
-        - `split_levels`: a torn beam is booked by thirds, so what lands in the wrong place is as wide as the beam, half as wide with each\n  \
+        - `split_levels`: an unresolved piece is booked by thirds, so what lands in the wrong place is as wide as the beam, half as wide with each\n  \
           level. That is only a part of the error: the table of shadow edges shows it fall until the cells' own error there is left, and\n  \
           the whole error falls far less.\n\
         - `water_cells` of a view: the map's texels set a floor under it.\n\

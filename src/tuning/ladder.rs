@@ -15,7 +15,7 @@ const SHADOW_TEXELS: u32 = 128;
 /// The dials with `cells` water cells; those that are no matter of accuracy of the light stay as they are, and so does the size of a
 /// map that was asked for.
 ///
-/// A beam's error falls with the square of the cells and a torn beam's with its size, so very many cells ask for more halvings; each
+/// A beam's error falls with the square of the cells and an unresolved piece's with its size, so very many cells ask for more halvings; each
 /// costs as much as all before it. In a scene of many meshes 295 cells with one were nearer than 256 with two (0.67 % and 0.71 %) in
 /// less time (169 and 229 ms; docs/accuracy.md, `reef`). A camera looks between the texels of the floor's map, which therefore has
 /// some more than there are cells.
