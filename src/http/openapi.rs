@@ -37,10 +37,14 @@ pub(super) fn document() -> utoipa::openapi::OpenApi {
 /// The contract.
 pub fn openapi() -> utoipa::openapi::OpenApi {
     let mut contract = router::api().into_openapi();
-    if let Some(components) = &mut contract.components {
+    if let utoipa::openapi::OpenApi {
+        components: Some(parts),
+        ..
+    } = &mut contract
+    {
         // The scene's own schema of it is neutral: which methods there are is known above the scene.
         let name = MethodChoice::name().into_owned();
-        components.schemas.insert(name, methods::schema().into());
+        parts.schemas.insert(name, methods::schema().into());
     }
     contract
 }
