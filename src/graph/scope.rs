@@ -108,6 +108,10 @@ impl<P: Program> Run<'_, P> {
     }
 }
 
+/// The steps of a beam set that is followed coarsely.
+pub type CoarseSteps<P> =
+    fn(&<P as Program>::Facts, BeamSetRun, &<P as Program>::Facts) -> Vec<Step<P>>;
+
 /// The steps of one run, by scope.
 pub enum Steps<P: Program> {
     /// See [`Scope::Frame`].
@@ -119,7 +123,7 @@ pub enum Steps<P: Program> {
     /// See [`Scope::FineBeamSet`].
     FineBeamSet(fn(&P::Facts, BeamSetRun) -> Vec<Step<P>>),
     /// See [`Scope::CoarseBeamSet`]: the coarse facts, the set, and the facts whose maps it is compared with.
-    CoarseBeamSet(fn(&P::Facts, BeamSetRun, &P::Facts) -> Vec<Step<P>>),
+    CoarseBeamSet(CoarseSteps<P>),
     /// See [`Scope::Estimate`].
     Estimate(fn(&P::Facts) -> Vec<Step<P>>),
     /// See [`Scope::Band`].

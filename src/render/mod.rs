@@ -34,8 +34,8 @@ use crate::scene::{ResolvedScene, SceneError};
 use crate::stages::objects::GEOMETRY;
 use crate::stages::points::Point;
 use crate::stats::{
-    AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
-    TimeStats, Warning,
+    AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, MethodStats, PassStats,
+    Stats, TimeStats, Warning,
 };
 
 pub use prepared::Prepared;
@@ -264,6 +264,7 @@ impl Renderer {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scene_hash: prepared.scene_hash().to_owned(),
             adapter: self.adapter(),
+            method: method_stats(facts),
             passes: plan
                 .passes
                 .iter()
@@ -601,6 +602,14 @@ fn timed<T>(ms: &mut f64, work: impl FnOnce() -> T) -> T {
 
 fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
+}
+
+fn method_stats(facts: &SceneFacts) -> MethodStats {
+    MethodStats {
+        name: facts.method.name.to_owned(),
+        paper: methods::of(&facts.quality).paper.to_owned(),
+        conserves_energy: facts.method.conserves_energy,
+    }
 }
 
 fn cache_change(before: &CacheStats, after: &CacheStats) -> CacheStats {
