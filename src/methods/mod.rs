@@ -46,7 +46,7 @@ pub struct Method {
     pub dials: &'static [&'static Dial],
     /// Fields of `quality`, shared by all methods, that trade its accuracy for time.
     pub shared_dials: &'static [&'static str],
-    /// Its WGSL files, see [`crate::embed_shaders`].
+    /// Its WGSL files, by `embed_shaders!` of [`crate::stages::shaders`].
     pub shaders: Embedded,
     /// Its passes, in the order they run: passes that trace light between [`BEFORE_METHOD`] and [`AFTER_MAPS`], passes that work on
     /// points between [`AFTER_MAPS`] and [`PICTURE`].

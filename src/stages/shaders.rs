@@ -4,12 +4,13 @@
 pub type Embedded = &'static [(&'static str, &'static str)];
 
 /// Lists files below `shaders/` with their text.
-#[macro_export]
 macro_rules! embed_shaders {
     ($($path:literal),* $(,)?) => {
         &[$(($path, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $path)))),*]
     };
 }
+
+pub(crate) use embed_shaders;
 
 /// Shared shader files; a test compares them and those of the methods with the folder.
 pub static SHARED: Embedded = embed_shaders![

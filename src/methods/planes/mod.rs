@@ -6,10 +6,10 @@ pub mod plane_deposit;
 
 use super::reference_planes::PLANES;
 use super::{Conformance, Method};
-use crate::embed_shaders;
 use crate::facts::method::LeavesOut;
 use crate::facts::{MethodFacts, Product};
 use crate::scene::{Dial, DialKind, DialWord};
+use crate::stages::shaders::embed_shaders;
 use crate::stages::{deposit, hits, irradiance, landed, split, unfollowed};
 
 /// The word of [`SLICING`] that leaves planes out.

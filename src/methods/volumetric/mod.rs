@@ -5,9 +5,9 @@ pub mod slice_deposit;
 
 use super::reference_planes::PLANES;
 use super::{Conformance, Method};
-use crate::embed_shaders;
 use crate::facts::method::LeavesOut;
 use crate::facts::{MethodFacts, Product};
+use crate::stages::shaders::embed_shaders;
 use crate::stages::{deposit, hits, irradiance, landed, split, unfollowed};
 
 /// See the module.
