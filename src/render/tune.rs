@@ -52,17 +52,17 @@ impl Renderer {
             is_view,
         };
         let choice = choose::for_error(target, &prospect, |cells| {
-            self.look(resolved, cells, cancel)
+            self.probe(resolved, cells, cancel)
         })?;
         let reason = if choice.meets {
             format!(
-                "{} looks at the light: the fewest cells that are predicted to stay under {target}",
-                choice.looks
+                "{} trial renders: the fewest cells that are predicted to stay under {target}",
+                choice.probes
             )
         } else {
             format!(
-                "{} looks at the light: no number of cells is sure to stay under {target}; these are predicted to come nearest",
-                choice.looks
+                "{} trial renders: no number of cells is sure to stay under {target}; these are predicted to come nearest",
+                choice.probes
             )
         };
         self.dials(
@@ -83,12 +83,12 @@ impl Renderer {
         let most = self.most_cells(resolved)?;
         let (cells, meets) =
             choose::for_time(budget_ms, most, |cells| self.predicted_ms(resolved, cells))?;
-        // A look near enough to foretell from.
-        let look = (cells / 2).max(ladder::FEWEST_CELLS);
-        let error = self.look(resolved, look, cancel)?.unwrap_or(0.0);
+        // A probe that is fine enough to extrapolate from.
+        let probed = (cells / 2).max(ladder::FEWEST_CELLS);
+        let error = self.probe(resolved, probed, cancel)?.unwrap_or(0.0);
         let is_view = resolved.scene.output.is_view();
         let margin = choose::margin(self.calibration.error_margin, is_view);
-        let predicted = choose::foretold(error * margin, look, cells, is_view);
+        let predicted = choose::extrapolated(error * margin, probed, cells, is_view);
         let reason = if meets {
             format!("the most cells that are predicted to take at most {budget_ms} ms")
         } else {
@@ -168,7 +168,7 @@ impl Renderer {
     }
 
     /// What the light with so many cells estimates its own error to be; no picture is made.
-    fn look(
+    fn probe(
         &mut self,
         resolved: &ResolvedScene,
         cells: u32,
