@@ -250,7 +250,9 @@ fn unsaid(stats: &Stats) -> Option<String> {
     }
     let open = stats.energy.iter().find(|a| a.closure > MOST_CLOSURE);
     match open {
-        Some(account) if !stats.planes.is_empty() && reported("method_does_not_conserve").is_none() => {
+        Some(account)
+            if !stats.planes.is_empty() && reported("method_does_not_conserve").is_none() =>
+        {
             Some(format!(
                 "planes place {:e} of the flux of light {} too much or too little, without a warning",
                 account.closure, account.light

@@ -11,7 +11,8 @@ use crate::physics::fresnel::{diffuse_transmittance, fresnel_reflectance, fresne
 use crate::physics::refraction::{reflect_direction, refract_direction};
 use crate::scene::{self, LayerName, Light, ResolvedScene};
 
-const RADIANCE: &str = "worst pixel against ρE/π and the sky, refracted and reflected by the water's surface";
+const RADIANCE: &str =
+    "worst pixel against ρE/π and the sky, refracted and reflected by the water's surface";
 const REFUSED: &str = "0 if the scene is refused at that field";
 /// Closer to the floor's rim than this share of its distance, rounding may put a ray's end on either side.
 const RIM: f64 = 1e-3;

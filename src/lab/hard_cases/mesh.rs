@@ -19,9 +19,11 @@ use crate::physics::refraction::{direction_to_light, refract_direction};
 use crate::scene::{LayerName, MethodChoice, Quality};
 
 const REFERENCE: &str = "relative L1 of the floor against the reference";
-const SAME: &str = "largest difference of the floor from that under the intact mesh, relative to the mean";
+const SAME: &str =
+    "largest difference of the floor from that under the intact mesh, relative to the mean";
 const SHADOW: &str = "missing flux on the floor against irradiance times the area of the shadow";
-const OPEN: &str = "largest difference of the floor from that without the mesh, relative to the mean";
+const OPEN: &str =
+    "largest difference of the floor from that without the mesh, relative to the mean";
 
 pub(super) const CASES: &[Case] = &[
     Mesh.case(

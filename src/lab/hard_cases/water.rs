@@ -15,7 +15,8 @@ const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
 const REFERENCE: &str = "relative L1 against the reference";
 const PERIOD: &str = "largest difference between moments a whole number of periods apart, one of them in the first period, relative to the mean";
 const PHASE: &str = "phases in f32, or too few digits in the time";
-const AGAIN: &str = "rays that would meet the water again, large sideways drift, slopes that face away";
+const AGAIN: &str =
+    "rays that would meet the water again, large sideways drift, slopes that face away";
 
 pub(super) const CASES: &[Case] = &[
     Water.case(
