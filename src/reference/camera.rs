@@ -121,7 +121,7 @@ impl<'a> Viewer<'a> {
     }
 
     /// What the middle of a pixel shows; pixels are numbered from the upper left. `None`: no surface.
-    pub(super) fn look(&mut self, pixel: [u32; 2]) -> Option<ViewPoint> {
+    pub(super) fn point(&mut self, pixel: [u32; 2]) -> Option<ViewPoint> {
         let at = DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
         let ray = self.pixel_ray(at);
         let above = self.place.over_water_m(ray.from_m) >= 0.0;

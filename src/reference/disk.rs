@@ -155,7 +155,8 @@ impl Shelf {
     }
 }
 
-/// A hash of everything that the result depends on: the scene without dials and without what affects the picture only, the number of points, and the program.
+/// A hash of everything that the result depends on: the scene without dials and without what affects the picture only, the number of
+/// points, and the program.
 fn key(resolved: &ResolvedScene, settings: &TruthSettings) -> String {
     let mut scene = resolved.scene.clone();
     let level_map_texels = scene.quality.level_map_texels;

@@ -2,8 +2,8 @@
 //!
 //! A lamp at height h lights a plane with I h/(ρ² + h²)^(3/2) at distance ρ from its foot: for a lamp a millimetre above the water, half
 //! the light goes through a spot of two millimetres, which an even lattice hardly samples. Here the lattice lies over (w, φ) with
-//! w = q + κ (1 − e^(−q)), q = ½ ln(1 + ρ²/h²). The second term distributes places like the light on a level plane. The first gives every ring of
-//! twice the width the same number; the flanks of waves at grazing light need this. Each place represents
+//! w = q + κ (1 − e^(−q)), q = ½ ln(1 + ρ²/h²). The second term distributes places like the light on a level plane. The first gives
+//! every ring of twice the width the same number; the flanks of waves at grazing light need this. Each place represents
 //! (ρ² + h²)/(1 + κ e^(−q)) dw dφ of the plane.
 
 use std::f64::consts::{PI, TAU};

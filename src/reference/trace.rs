@@ -27,8 +27,9 @@ pub(super) struct Ground<'a, const K: usize> {
 }
 
 impl<const K: usize> Ground<'_, K> {
-    /// Counts the rows of `lattice` in `window` with `row`, which is told whether the request was cancelled and rows are skipped. The
-    /// number of bands and the order of their sum depend on the map only, so the bits do not depend on the threads.
+    /// Calls `count_row` for each row of `lattice` in `window`; `counted` gets the number of rays of each band. Once `cancelled` returns
+    /// true, the remaining rows are skipped. The number of bands and the order of their sum depend on the map only, so the bits do not
+    /// depend on the threads.
     pub(super) fn count_rows(
         &self,
         lattice: &Lattice,

@@ -54,8 +54,9 @@ pub struct Truth {
 
 impl Truth {
     /// Whether each value lies at most `reach` values (along x and y alike) from the edge of a shadow; `None` when no mesh casts
-    /// any. For a view with a `pixel_step` above 1, values are several pixels apart: see [`shadow_edge`](super::shadow_edge). The edge runs between
-    /// neighbours on both sides of a share of one half, and where the share is neither 0 nor 1.
+    /// any. For a view with a `pixel_step` above 1, values are several pixels apart: see
+    /// [`shadow_edge`](super::shadow_edge). The edge runs between neighbours on both sides of a share of one half, and where the share is
+    /// neither 0 nor 1.
     pub fn shadow_edge(&self, reach: u32) -> Option<Vec<bool>> {
         let shadow = self.shadow.as_ref()?;
         let size = [self.width as usize, self.height as usize];

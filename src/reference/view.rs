@@ -88,7 +88,7 @@ pub(super) fn view(
     let mut viewer = Viewer::of(&place, &picture);
     let mut points = Vec::new();
     for pixel in grid.pixels() {
-        points.push(viewer.look(pixel).map(|point| lit(&place, point)));
+        points.push(viewer.point(pixel).map(|point| lit(&place, point)));
         if cancelled() {
             return Err(ReferenceError::Cancelled);
         }
@@ -129,7 +129,7 @@ pub(super) fn shadows(
         .par_iter()
         .map_init(
             || viewer.clone(),
-            |viewer, &pixel| viewer.look(pixel).map(|point| lit(&place, point)),
+            |viewer, &pixel| viewer.point(pixel).map(|point| lit(&place, point)),
         )
         .collect();
     let counted = round(&place, &points, SHADOW_POINTS, &|| false, &|_| {});
