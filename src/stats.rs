@@ -12,6 +12,8 @@ pub struct Stats {
     pub scene_hash: String,
     /// Where it ran.
     pub adapter: AdapterStats,
+    /// The method that carried the light.
+    pub method: MethodStats,
     /// Passes that ran, in order.
     pub passes: Vec<PassStats>,
     /// Passes that did not run, and why.
@@ -32,6 +34,18 @@ pub struct Stats {
     pub exposure: ExposureStats,
     /// Whatever was clamped, skipped, sub-sampled or not simulated.
     pub warnings: Vec<Warning>,
+}
+
+/// The method that carried the light of a frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(default)]
+pub struct MethodStats {
+    /// Its name, as in `quality.method`.
+    pub name: String,
+    /// Where it was published.
+    pub paper: String,
+    /// Whether the light that lands is what its rays carried; where not, open energy accounts are no defect.
+    pub conserves_energy: bool,
 }
 
 /// The adapter a frame ran on.

@@ -221,8 +221,8 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     ShaderPlant {
         family: "water",
         file: "stages/unfollowed.wgsl",
-        from: "note_unfollowed(TERM_TURNED, -signed_unit_flux(",
-        to: "note_unfollowed(TERM_TURNED, -0.5 * signed_unit_flux(",
+        from: "note_unfollowed(TERM_FACING_AWAY, -signed_unit_flux(",
+        to: "note_unfollowed(TERM_FACING_AWAY, -0.5 * signed_unit_flux(",
         red: Red::Only(&["slopes_that_look_away"]),
         what: "only half of the flux on slopes that face away is reported",
     },

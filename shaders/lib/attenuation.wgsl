@@ -1,11 +1,11 @@
-// Loss of a beam on its way through water. Twin of src/physics/attenuation.rs.
+// Attenuation of a beam in water. Twin of src/physics/attenuation.rs.
 
 // Fraction left after `length_m` with extinction `c_per_m` (both 0 … 10⁶): e^(−c d).
 fn transmission(c_per_m: f32, length_m: f32) -> f32 {
     return exp(-c_per_m * length_m);
 }
 
-// Fraction lost, 1 − e^(−c d), exact also where c d is tiny (WGSL has no expm1: its series there).
+// Fraction lost, 1 − e^(−c d), precise also for tiny c d (WGSL has no expm1, so a series is used there).
 fn extinction(c_per_m: f32, length_m: f32) -> f32 {
     let x = c_per_m * length_m;
     if x < 0.06 {

@@ -1,6 +1,6 @@
-// How much of a texel a footprint covers, in closed form. Twin of src/physics/coverage.rs. Places and widths up to 10³⁰.
+// Coverage of a texel by a footprint, in closed form. Twin of src/physics/coverage.rs. Coordinates and widths up to 10³⁰.
 
-// Smallest normal number. A GPU may take what is below for 0, and in a quotient only: 0/0.
+// Smallest normal number. A GPU may flush smaller numbers to 0, even in only one part of a quotient, which would give 0/0.
 const SMALLEST_NORMAL = 0x1p-126f;
 
 // Mean of max(x, 0) for x running evenly from `x_a` to `x_b`.
@@ -12,7 +12,7 @@ fn mean_positive(x_a: f32, x_b: f32) -> f32 {
     return (m_b - m_a) / d * (0.5 * (m_a + m_b));
 }
 
-// Mean of clamp(x, 0, w) for x running evenly from `x_a` to `x_b`; keeps its digits where the edge is long against `w`.
+// Mean of clamp(x, 0, w) for x running evenly from `x_a` to `x_b`; stays precise if the edge is long compared with `w`.
 fn mean_clamped(x_a: f32, x_b: f32, w: f32) -> f32 {
     let c_a = clamp(x_a, 0.0, w);
     let c_b = clamp(x_b, 0.0, w);
@@ -30,8 +30,8 @@ fn tent_share_below(t: f32, t_0: f32, t_peak: f32, t_1: f32) -> f32 {
     return 1.0 - (t_1 - t) / length * ((t_1 - t) / max(t_1 - t_peak, SMALLEST_NORMAL));
 }
 
-// Share of that density between heights `t_a` ≤ `t_b`. Unlike a difference of two shares below it keeps its digits where the piece
-// is short against the tent.
+// Share of that density between heights `t_a` ≤ `t_b`. Unlike a difference of two shares below, it stays precise if the interval is short
+// compared with the tent.
 fn tent_share_between(t_a: f32, t_b: f32, t_0: f32, t_peak: f32, t_1: f32) -> f32 {
     let length = max(t_1 - t_0, SMALLEST_NORMAL);
     let rise = clamp(vec2f(t_a, t_b), vec2f(t_0), vec2f(t_peak));

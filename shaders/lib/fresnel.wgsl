@@ -22,6 +22,6 @@ fn fresnel_transmittance(cos_i: f32, eta: f32) -> f32 {
     let eta_cos_t = sqrt(square);
     let s_sum = cos_i + eta_cos_t;
     let p_sum = eta * cos_i + eta_cos_t / eta;
-    // Not cos_i · eta_cos_t first: at grazing incidence that product is subnormal, and GPUs take it for zero.
+    // Do not multiply cos_i · eta_cos_t first: at grazing incidence that product is subnormal, and GPUs flush it to zero.
     return 2.0 * cos_i * (eta_cos_t / (s_sum * s_sum) + eta_cos_t / (p_sum * p_sum));
 }

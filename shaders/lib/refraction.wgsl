@@ -1,7 +1,7 @@
 // Snell's law and mirror reflection as vectors. Twin of src/physics/refraction.rs.
 
-// (η cos θ_t)² = (η − 1)(η + 1) + cos² θ_i for incidence cosine `cos_i` and `eta` = n_to / n_from: no digit is lost where η is near 1
-// or light grazes. Below 0 at total internal reflection.
+// (η cos θ_t)² = (η − 1)(η + 1) + cos² θ_i for incidence cosine `cos_i` and `eta` = n_to / n_from. This form has no cancellation for η near
+// 1 or grazing light. Negative at total internal reflection.
 fn refracted_square(cos_i: f32, eta: f32) -> f32 {
     return (eta - 1.0) * (eta + 1.0) + cos_i * cos_i;
 }
@@ -19,7 +19,7 @@ fn reflect_direction(direction: vec3f, normal: vec3f) -> vec3f {
     return direction - normal * (2.0 * dot(direction, normal));
 }
 
-// Unit normal (up) of y = h(x, z) with slopes ∂h/∂x and ∂h/∂z, at most 10¹⁸ so that their squares are numbers.
+// Unit normal (up) of y = h(x, z) with slopes ∂h/∂x and ∂h/∂z, at most 10¹⁸ so that their squares are finite.
 fn normal_from_slope(slope_x: f32, slope_z: f32) -> vec3f {
     return normalize(vec3f(-slope_x, 1.0, -slope_z));
 }

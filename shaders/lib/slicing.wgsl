@@ -5,8 +5,8 @@ fn plane_depth(s_min: f32, s_max: f32, planes: f32, index: f32) -> f32 {
     return s_min + (s_max - s_min) * (index / (planes - 1.0));
 }
 
-// The plane within half a distance of depth `s`, 0 … planes − 1. Intervals are half open: each depth has one plane. Planes that all lie
-// at one depth (s_max − s_min below 10⁻³⁰) are as good as the first.
+// The plane within half a plane distance of depth `s`, 0 … planes − 1. Intervals are half open, so each depth has one plane. If all planes
+// lie at one depth (s_max − s_min below 10⁻³⁰), it is the first.
 fn plane_of_depth(s_min: f32, s_max: f32, planes: f32, s: f32) -> f32 {
     let extent = s_max - s_min;
     if extent < 1e-30 { return 0.0; }

@@ -1,7 +1,7 @@
 // Solid angles of triangles. Twin of src/physics/solid_angle.rs.
 
-// Angle of the point (x, y) against the x axis, rad, above −π, at most π; 0 at the origin; coordinates up to 10³⁷. Own polynomial,
-// because WGSL lets atan2 be 4096 ulp off; coefficients of the single-precision Cephes library (Moshier 1992) on ±tan(π/8).
+// Angle of the point (x, y) from the x axis, rad, above −π, at most π; 0 at the origin; coordinates up to 10³⁷. An own polynomial, because
+// WGSL allows an error of 4096 ulp in atan2; coefficients of the single-precision Cephes library (Moshier 1992) on ±tan(π/8).
 fn point_angle(y: f32, x: f32) -> f32 {
     let rise = abs(y);
     let run = abs(x);
@@ -24,8 +24,8 @@ fn point_angle(y: f32, x: f32) -> f32 {
     return select(upper, -upper, y < 0.0);
 }
 
-// Solid angle of the triangle with corners a, a + ab, a + ac, seen from the origin, sr, −2π … 2π; above 0 where ab × ac looks away
-// from the origin. Lengths 10⁻⁶ … 10⁶, or 0.
+// Solid angle of the triangle with corners a, a + ab, a + ac, seen from the origin, sr, −2π … 2π; positive if ab × ac points away from the
+// origin. Lengths 10⁻⁶ … 10⁶, or 0.
 fn solid_angle(a: vec3f, ab: vec3f, ac: vec3f) -> f32 {
     let b = a + ab;
     let c = a + ac;

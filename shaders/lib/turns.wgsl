@@ -1,7 +1,7 @@
 // Angles in turns (1 = 2π). Twin of src/physics/turns.rs.
 
-// (sin, cos) of 2π `turns`, any number (beyond 2²⁴ all are whole). Own polynomials, because WGSL leaves the error of sin and cos to the driver; coefficients of the
-// single-precision Cephes library (Moshier 1992) on ±π/4.
+// (sin, cos) of 2π `turns`; any number (beyond 2²⁴ all are integers). Own polynomials, because WGSL leaves the error of sin and cos to the
+// driver; coefficients of the single-precision Cephes library (Moshier 1992) on ±π/4.
 fn sin_cos_turns(turns: f32) -> vec2f {
     let reduced = turns - round(turns);
     let quarters = round(reduced * 4.0);

@@ -1,15 +1,15 @@
-// The energy account of a workgroup, gathered before it goes to the global sums.
+// The energy account of a workgroup, summed in shared memory before it is added to the global account.
 
 var<workgroup> account: array<atomic<u32>, 12>;
 
-// Counts finer than those of whole beams, a power of two: what notes small parts sets it before the first.
+// Factor by which counts are finer than for whole beams, a power of two. Passes with small parts set it before they note any.
 var<private> finer: f32 = 1.0;
 
-// Whether terms go straight to the global sums: the parts of a near point light's beams are of too different size for one scale.
-var<private> straight: bool = false;
+// Whether terms are added directly to the global sums: parts of a near point light's beams differ too much in size for one scale.
+var<private> is_direct: bool = false;
 
 fn note_term(term: u32, unit_flux: f32) {
-    if straight {
+    if is_direct {
         if unit_flux > 0.0 { add_energy(term, unit_flux * light.energy_scale); }
         return;
     }
@@ -36,7 +36,7 @@ fn note_losses(losses: Losses) {
 fn flush_account(invocation: u32) {
     if invocation < 12u {
         let counts = atomicLoad(&account[invocation]);
-        // All scales are powers of two and each half fits f32: nothing is rounded, however the beams are shared out.
+        // All scales are powers of two and each half fits f32: nothing is rounded, however beams are distributed over workgroups.
         let scale = light.energy_scale / (light.triangle_scale * finer);
         if counts >= 65536u { add_energy(invocation, f32(counts & 0xffff0000u) * scale); }
         if counts > 0u { add_energy(invocation, f32(counts & 0xffffu) * scale); }

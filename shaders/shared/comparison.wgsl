@@ -1,4 +1,4 @@
-// What the estimate compares: places of the maps, spread over them, some to a workgroup. Two passes go over the same places.
+// The places at which the estimate compares maps, spread over them; each workgroup takes several. Two passes process the same places.
 
 struct Comparison {
     fine_width: u32,
@@ -6,12 +6,12 @@ struct Comparison {
     coarse_width: u32,
     coarse_height: u32,
     first_fine: u32,   // first texel in `irradiance`
-    first_coarse: u32, // first texel in the flux sums of the coarse light
-    receiver: u32,     // that the coarse map is of
-    blocks: u32,       // 1: whole blocks of fine texels against coarse ones; 0: fine texels against the coarse map between its texels
+    first_coarse: u32, // first texel in the flux sums of the coarse beam set
+    receiver: u32,     // receiver of the coarse map
+    blocks: u32,       // 1: whole blocks of fine texels are compared with coarse texels; 0: fine texels with the interpolated coarse map
     first_group: u32,  // first workgroup
-    places: u32,       // how many of those blocks or texels are looked at
-    one_in: u32,       // one in so many of them, anywhere among these
+    places: u32,       // number of blocks or texels that are compared
+    one_in: u32,       // one of each `one_in` consecutive blocks or texels is compared, chosen at random
     pad: u32,
 }
 
@@ -31,13 +31,13 @@ fn comparison_of(number: u32, count: u32) -> Comparison {
     return comparisons[low];
 }
 
-// Where place `i` of an invocation stands among those of all workgroups.
+// Index of place `i` of an invocation among the places of all workgroups.
 fn rank_of(number: u32, i: u32, invocation: u32) -> u32 {
     return (number * PLACES_EACH + i) * 64u + invocation;
 }
 
-// A number without pattern for each `i`, so that what is looked at does not keep step with waves: PCG as in Jarzynski and Olano,
-// "Hash Functions for GPU Rendering", 2020.
+// A hash of `i`, so that the compared places do not align with waves: PCG as in Jarzynski and Olano, "Hash Functions for GPU Rendering",
+// 2020.
 fn scattered(i: u32) -> u32 {
     let state = i * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;

@@ -1,7 +1,8 @@
-// Beams that may reach an object's planes (the thesis's own next step, Tipprasert 2006, §6.1): planes × beams is only paid for them.
+// Selects the beams that may reach an object's planes (the thesis's own next step, Tipprasert 2006, §6.1), so that the cost of
+// planes × beams is only paid for these beams.
 //
-// The queue's head holds two dispatches with their counts, of narrow beams and of those whose footprints are wide; narrow ones are
-// queued from the front, wide ones from the back.
+// The queue's head holds two dispatches with their counts: of beams with narrow footprints, queued from the front, and of beams with wide
+// footprints, queued from the back.
 
 @group(0) @binding(17) var<storage, read_write> beam_queue: array<atomic<u32>>;
 
@@ -13,11 +14,11 @@ const WIDE_GROUPS: u32 = 16u;
 const CULL_GROUP: u32 = 64u;
 const MOST_CULL_GROUPS: u32 = 65535u;
 
-// Where a beam cuts a plane.
+// The intersection of a beam with a plane.
 struct Crossing {
     uv: mat3x2f,  // corners, texels
     t: vec3f,     // path lengths, m
-    meets: bool,  // all rays go down through it, under water
+    meets: bool,  // whether all rays go down through the plane, under water
 }
 
 // A beam's rays in the map space of a receiver.
@@ -49,13 +50,13 @@ fn cross_plane(rays: MapRays, r: Receiver, s: f32) -> Crossing {
         c.meets = c.meets && down;
         sum += t;
     }
-    // A plane that cuts the water itself has the beams whose middle is above it.
+    // If a plane cuts the water surface, it takes the beams whose mean start is above it.
     c.meets = c.meets && sum >= 0.0;
     return c;
 }
 
-// One invocation per water cell. The bounds of what is between the first and the last plane against the map; a triangle's extent
-// between two planes is at most the larger of both.
+// One invocation per water cell. Tests the beam's bounds between the first and the last plane against the map. Its triangle's extent on
+// the planes in between is at most the larger of the two.
 fn cull_beam(cell: vec2u, half: u32) {
     let b = grid_rays(cell, half);
     if b.transmitted == 0.0 { return; }
@@ -89,12 +90,13 @@ fn wide_beam(item: u32) -> Beam {
     return numbered_rays(atomicLoad(&beam_queue[CULL_HEAD + planes.capacity - 1u - item]));
 }
 
-// Beams that are kept.
+// Number of selected beams.
 fn kept_beams() -> u32 {
     return atomicLoad(&beam_queue[NARROW_COUNT]) + atomicLoad(&beam_queue[WIDE_COUNT]);
 }
 
-// The dispatches over the queue; along y as many groups of planes for narrow beams, and for wide ones.
+// Writes the dispatches over the queue. Along y they have `narrow_planes` groups of planes for narrow beams and `wide_planes` for wide
+// ones.
 fn share_out(narrow_planes: u32, wide_planes: u32) {
     let narrow = atomicLoad(&beam_queue[NARROW_COUNT]);
     let wide = atomicLoad(&beam_queue[WIDE_COUNT]);

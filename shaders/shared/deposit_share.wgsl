@@ -1,6 +1,6 @@
-// Where a footprint's shares go: to every texel it covers.
+// Deposits a footprint's shares on every texel it covers.
 
-// Adds `share` of the flux at texel (x, y); what lies beside the map is returned.
+// Adds `share` of the flux at texel (x, y); returns the share that lies outside the map.
 fn deposit_share(target_map: Target, x: i32, y: i32, share: f32, triangle_flux: vec3f) -> f32 {
     if x < 0 || y < 0 || x >= target_map.width || y >= target_map.height { return share; }
     let texel = target_map.offset + u32(y * target_map.width + x);

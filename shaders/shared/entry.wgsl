@@ -1,21 +1,21 @@
-// Where a light's ray starts under water, and which way it goes.
+// Start and direction of a light's ray under water.
 
 struct Entry {
     origin: vec3f,
     direction: vec3f,
-    transmittance: f32, // 0 where the surface looks away from the light
+    transmittance: f32, // 0 where the surface faces away from the light
 }
 
-// Unit direction from `p` to the light; up where the light itself is.
+// Unit direction from `p` to the light; up if `p` is at the light.
 fn light_at(p: vec3f) -> vec3f {
     if light.kind == SUN { return light.source.xyz; }
-    let way = light.source.xyz - p;
-    let length2 = dot(way, way);
+    let to_light = light.source.xyz - p;
+    let length2 = dot(to_light, to_light);
     if length2 < 1e-30 { return vec3f(0.0, 1.0, 0.0); }
-    return way * inverseSqrt(length2);
+    return to_light * inverseSqrt(length2);
 }
 
-// The ray of grid place `ij` through water of (height, ∂h/∂x, ∂h/∂z); from a light under water it needs none.
+// The ray of grid place `ij` through water of (height, ∂h/∂x, ∂h/∂z), which is unused for a light under water.
 fn entry_at(ij: vec2f, water: vec3f) -> Entry {
     let origin = origin_at(ij, water.x);
     if light.kind == SUBMERGED {

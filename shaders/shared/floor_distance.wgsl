@@ -1,8 +1,8 @@
-// The receivers of the light at work, and rays against the floor.
+// The receivers of the current light, and intersection of rays with the floor.
 
 @group(0) @binding(3) var<storage, read> receivers: array<Receiver>;
 
-// Where the ray meets the floor plane, m; < 0: never.
+// Distance along the ray to the floor plane, m; < 0: it never hits it.
 fn floor_distance(r: Receiver, origin: vec3f, direction: vec3f) -> f32 {
     let s = dot(r.s_row, vec4f(origin, 1.0));
     let rate = dot(r.s_row.xyz, direction);

@@ -1,27 +1,27 @@
-// Sums of flux as fixed point: integer additions commute, so the same request gives the same bytes.
+// Fixed-point sums of flux: integer additions commute, so the same request gives the same bytes.
 //
-// One u32 per texel and channel holds 1024 times the flux of an evenly lit texel. Where a focus passes that, the sum wraps, what
-// landed is short by a whole 2³² counts, the host sees it in the energy account and runs the light again with WIDE_SUMS: 64 bits
-// in two words, which nothing can fill (2⁴⁰ counts at most per beam). Where u32 would be too coarse the host starts with those.
+// One u32 per texel and channel holds 1024 times the flux of an evenly lit texel. If a focus exceeds that, the sum wraps and the landed
+// flux is short by 2³² counts. The host detects that in the energy account and runs the beam set again with WIDE_SUMS: 64 bits in two
+// words, which cannot overflow (at most 2⁴⁰ counts per beam). If u32 would be too coarse, the host starts with wide sums.
 
 override WIDE_SUMS: bool = false;
 
 @group(0) @binding(4) var<storage, read_write> flux: array<atomic<u32>>;
 @group(0) @binding(5) var<storage, read_write> energy: array<atomic<u32>>;
 
-// Terms of the energy account; one (low, high) pair per term and channel, see sums.rs.
+// Terms of the energy account; one (low, high) pair per term and channel, see term.rs.
 const TERM_EMITTED: u32 = 0u;
 const TERM_REFLECTED: u32 = 1u;
 const TERM_MISSED: u32 = 2u;
 const TERM_EXTINGUISHED: u32 = 3u;
 const TERM_LEFT: u32 = 6u;
 const TERM_LANDED: u32 = 9u;
-const TERM_TORN: u32 = 12u;       // flux of beams that straddle receivers to the end
-const TERM_TORN_COUNT: u32 = 13u; // how many those are
-const TERM_CUT: u32 = 14u;        // flux of those that were halved less often than asked for, because the queue was full
-const TERM_TURNED: u32 = 15u;     // flux of slopes that look away from the light
-const TERM_AGAIN: u32 = 16u;      // flux of beams that come out of the water again
-const TERM_BARED: u32 = 17u;      // flux of beams that start below the floor
+const TERM_UNRESOLVED: u32 = 12u;       // flux of unresolved pieces, which straddle receivers after the last halving
+const TERM_UNRESOLVED_COUNT: u32 = 13u; // number of unresolved pieces
+const TERM_CUT: u32 = 14u;              // flux of unresolved pieces halved fewer times than requested, because the queue was full
+const TERM_FACING_AWAY: u32 = 15u;      // flux of slopes that face away from the light
+const TERM_LEAVING_AGAIN: u32 = 16u;    // flux of beams that leave the water again
+const TERM_BARED_FLOOR: u32 = 17u;      // flux of beams that start below the floor
 
 fn add_flux(texel: u32, channel: u32, channels: u32, counts: f32) {
     let place = texel * channels + channel;
@@ -49,7 +49,7 @@ fn flux_counts(texel: u32, channel: u32, channels: u32) -> f32 {
     return f32(words.y) * 4294967296.0 + f32(words.x);
 }
 
-// The counts of a texel's three channels, which may be one.
+// The counts of a texel's three channels; with one channel all three are equal.
 fn flux_colour(texel: u32, channels: u32) -> vec3f {
     var counts = vec3f(flux_counts(texel, 0u, channels));
     if channels == 3u {

@@ -1,11 +1,11 @@
-// Depositing a triangle's flux on a receiver map: flux × covered share of each texel, in closed form. Where the shares go is for
-// `deposit_share` to say, which a pass brings along.
+// Deposits a triangle's flux on a receiver map: flux × covered share of each texel, in closed form. The importing pass supplies
+// `deposit_share`, which adds a share to a texel.
 
-// Longest side (texels) under which a footprint is a point, and area / side² under which it is a segment: there the share of
-// f32 rounding in the coverage would pass 10⁻³ of the triangle's flux, while moving the flux by less than 10⁻³ texel does not show.
+// Longest side (texels) below which a footprint is a point, and area / side² below which it is a segment. There f32 rounding of the
+// coverage would exceed 10⁻³ of the triangle's flux, while moving the flux by less than 10⁻³ texel is invisible.
 const POINT_SIDE: f32 = 1e-3;
 const SEGMENT_SHAPE: f32 = 4e-4;
-// Area (texel²) under which a row of a footprint has none: its share, no more than rounding, goes to the row's first texel.
+// Area (texel²) below which a row of a footprint counts as empty. Its share is only rounding and goes to the row's first texel.
 const FLAT_ROW: f32 = 1e-30;
 
 struct Target {
@@ -16,16 +16,16 @@ struct Target {
     scale: f32, // counts per unit of flux
 }
 
-// The share of a triangle (corners relative to `base`) in the column from `x_0` to `x_1` of a row from `y_0` to `y_1`,
-// as signed area. Edges run corner to corner; see src/physics/coverage.rs.
+// The edges of a triangle (corners relative to `base`), clipped to a row from `y_0` to `y_1`; they give the signed area in any column of
+// the row. Edges run corner to corner; see src/physics/coverage.rs.
 struct RowEdges {
     x_a: vec3f,
     x_b: vec3f,
     dy: vec3f,
 }
 
-// x of an edge at height y, always counted from its lower end: neighbours that share the edge get the same number, so that what
-// rounding takes from one it gives to the other.
+// x of an edge at height y, always computed from its lower end: neighbours that share the edge get the same number, so flux that one
+// loses to rounding goes to the other.
 fn edge_x(a: vec2f, b: vec2f, y: f32) -> f32 {
     let swapped = b.y < a.y || (b.y == a.y && b.x < a.x);
     let p = select(a, b, swapped);
@@ -42,7 +42,7 @@ fn clip_to_row(a: vec2f, b: vec2f, c: vec2f, y_0: f32, y_1: f32) -> RowEdges {
     return RowEdges(x_a, x_b, y_end - y_start);
 }
 
-// The same edges with x counted from `x`: coverage keeps its last bits when it is counted from near by.
+// The same edges with x relative to `x`: coverage is more precise when computed from a nearby origin.
 fn moved(edges: RowEdges, x: f32) -> RowEdges {
     return RowEdges(edges.x_a - x, edges.x_b - x, edges.dy);
 }
@@ -71,14 +71,14 @@ fn area_within(edges: RowEdges, width: f32) -> f32 {
         + edges.dy.z * mean_clamped(edges.x_a.z, edges.x_b.z, width);
 }
 
-// Bounds of texel `i` of `count` along one axis; the border cells −1 and `count` reach to the footprint's end.
+// Bounds of texel `i` of `count` along one axis; the border cells −1 and `count` extend to the footprint's end.
 fn cell_bounds(i: i32, count: i32, base: f32, low: f32, high: f32) -> vec2f {
     return vec2f(
         select(f32(i) - base, low, i < 0),
         select(f32(i + 1) - base, high, i >= count));
 }
 
-// Whether a footprint has no area to speak of.
+// Whether a footprint has a negligible area and must be deposited as a segment.
 fn is_segment(a: vec2f, b: vec2f, c: vec2f) -> bool {
     let p = b - a;
     let q = c - a;
@@ -92,7 +92,7 @@ struct TexelBox {
     last: vec2i,
 }
 
-// Huge coordinates stay in the range of i32: everything past the border is the border cell.
+// Huge coordinates stay in the range of i32: everything beyond the border falls into the border cell.
 fn texel_box(target_map: Target, a: vec2f, b: vec2f, c: vec2f) -> TexelBox {
     let size = vec2f(f32(target_map.width), f32(target_map.height));
     let first = vec2i(floor(clamp(min(a, min(b, c)), vec2f(-1.0), size)));
@@ -100,16 +100,16 @@ fn texel_box(target_map: Target, a: vec2f, b: vec2f, c: vec2f) -> TexelBox {
     return TexelBox(first, last);
 }
 
-// A triangle that is no segment, made ready to be dealt out row by row.
+// A triangle that is no segment, prepared to be deposited row by row.
 struct Footprint {
-    base: vec2f,        // a texel corner near by: what is counted from there keeps its last bits
-    corners: mat3x2f,   // from `base`, as the next four
+    base: vec2f,        // a nearby texel corner, the origin of the coordinates below, for precision
+    corners: mat3x2f,   // relative to `base`, as the next three
     low: vec2f,
     middle_y: f32,      // height of the corner between the lowest and the highest
     high: vec2f,
-    turn: f32,          // −1 where it is turned inside out, and areas are negative
-    box: TexelBox,      // texels that get any of it
-    is_whole: bool,     // all of it goes to one texel
+    turn: f32,          // sign of the area: −1 if the triangle is inverted
+    box: TexelBox,      // texels that get a share
+    is_whole: bool,     // whether one texel gets all of it
 }
 
 fn footprint_of(target_map: Target, a: vec2f, b: vec2f, c: vec2f) -> Footprint {
@@ -130,18 +130,18 @@ fn footprint_of(target_map: Target, a: vec2f, b: vec2f, c: vec2f) -> Footprint {
         let middle = clamp(vec2i(floor((a + b + c) / 3.0)), f.box.first, f.box.last);
         f.box = TexelBox(middle, middle);
     }
-    // In one texel, or wholly past one side of the map.
+    // In one texel, or entirely beyond one side of the map.
     f.is_whole = all(f.box.first == f.box.last) || any(f.box.last < vec2i(0)) || any(f.box.first >= size);
     if f.is_whole { f.box.last = f.box.first; }
     return f;
 }
 
-// Deals out row `y` of a footprint; returns the share that fell beside the map. A row has one place that writes: on a CPU driver both
-// sides of every branch are run, and atomics are what costs.
+// Deposits row `y` of a footprint; returns the share outside the map. There is only one call that writes per row: a CPU driver runs both
+// sides of every branch, and atomics dominate the cost.
 //
-// The row's share of the flux comes from the corners' heights alone and is dealt out by what of the row's area lies in each column,
-// never less than nothing and in all the whole: however thin the footprint, and however much rounding is in its areas, all shares
-// together are 1.
+// The row's share of the flux depends only on the corners' heights. It is distributed over columns in proportion to the row's area in
+// each. Column shares are never negative and add up to the row's share, so all shares add up to 1, however thin the footprint and however
+// large the rounding of its areas.
 fn deposit_row(target_map: Target, f: Footprint, y: i32, triangle_flux: vec3f) -> f32 {
     let row = cell_bounds(y, target_map.height, f.base.y, f.low.y, f.high.y);
     let row_share = select(tent_share_between(row.x, row.y, f.low.y, f.middle_y, f.high.y), 1.0, f.is_whole);
@@ -164,7 +164,7 @@ fn deposit_row(target_map: Target, f: Footprint, y: i32, triangle_flux: vec3f) -
     return beside;
 }
 
-// Deposits a triangle that is no segment; returns the share that fell beside the map.
+// Deposits a triangle that is no segment; returns the share outside the map.
 fn deposit_area(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
     let f = footprint_of(target_map, a, b, c);
     var beside = 0.0;
@@ -172,13 +172,13 @@ fn deposit_area(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux:
     return beside;
 }
 
-// Deposits a triangle of any shape; returns the share that fell beside the map.
+// Deposits a triangle of any shape; returns the share outside the map.
 fn deposit_triangle(target_map: Target, a: vec2f, b: vec2f, c: vec2f, triangle_flux: vec3f) -> f32 {
     if is_segment(a, b, c) { return deposit_segment(target_map, a, b, c, triangle_flux); }
     return deposit_area(target_map, a, b, c, triangle_flux);
 }
 
-// A footprint without area: its flux lies on its longest side, densest under the corner in between.
+// Deposits a footprint without area: its flux lies on its longest side, with a tent density that peaks at the third corner.
 fn deposit_segment(target_map: Target, corner_a: vec2f, corner_b: vec2f, corner_c: vec2f, triangle_flux: vec3f) -> f32 {
     let base = vec2f(texel_box(target_map, corner_a, corner_b, corner_c).first);
     let a = corner_a - base;

@@ -1,5 +1,5 @@
-// Meshes as rays meet them: a hierarchy over the instances, and in each instance the hierarchy over its mesh's triangles; both with
-// skip pointers, so that they are walked without a stack.
+// Intersection of rays with meshes: a hierarchy over the instances, and for each instance the hierarchy over its mesh's triangles. Both
+// have skip pointers, so that they are traversed without a stack.
 
 struct Instance {
     mesh_x: vec4f, // rows of mesh_from_local
@@ -97,12 +97,12 @@ fn trace_instance(index: u32, origin: vec3f, direction: vec3f, t_min: f32, t_max
     return best;
 }
 
-// Where the walk over the hierarchy of `count` instances ends.
+// Number of nodes in the hierarchy of `count` instances, where its traversal ends.
 fn instance_nodes(count: u32) -> u32 {
     return select(2u * count - 1u, 0u, count == 0u);
 }
 
-// One step of that walk: an instance that the ray may meet before t_max, or NO_INSTANCE, and the node to go on with.
+// One step of the traversal: an instance that the ray may hit before t_max, or NO_INSTANCE, and the next node.
 struct InstanceStep {
     index: u32,
     next: u32,
@@ -143,7 +143,7 @@ fn trace_objects(count: u32, origin: vec3f, direction: vec3f, t_min: f32, t_max:
             + hit.v * unpack_normal(geometry[hit.triangle + 2u].w);
         let n = turned_normal(i, n_mesh);
         let facing = normalize(n);
-        // Which side is seen is the triangle's to say: a shading normal turns away at silhouettes.
+        // The triangle itself decides which side is seen: its shading normal may face away at silhouettes.
         let corner = bitcast<vec3f>(geometry[hit.triangle].xyz);
         let flat_mesh = cross(bitcast<vec3f>(geometry[hit.triangle + 1u].xyz) - corner, bitcast<vec3f>(geometry[hit.triangle + 2u].xyz) - corner);
         let flat = turned_normal(i, flat_mesh);

@@ -1,7 +1,7 @@
 // The triangles of the water grid: two per cell. The diagonal alternates like a chessboard, so that turning the scene by a quarter
 // turns the triangles with it (for an even number of cells).
 
-// The vertex of an invocation of 64 to a workgroup: row by row, `side` to a row. Beyond the last row there are none.
+// The vertex of an invocation in workgroups of 64: row by row, `side` vertices per row. Rows from `side` on do not exist.
 fn vertex_of(group: vec3u, groups: vec3u, invocation: u32, side: u32) -> vec2u {
     let vertex = (group.y * groups.x + group.x) * 64u + invocation;
     return vec2u(vertex % side, vertex / side);

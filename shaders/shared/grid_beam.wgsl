@@ -1,4 +1,4 @@
-// The beams of the water grid, from what earlier passes have stored.
+// The beams of the water grid, loaded from the results of earlier passes.
 
 @group(0) @binding(10) var<storage, read> hits: array<vec4f>;
 

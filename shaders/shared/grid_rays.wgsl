@@ -1,4 +1,4 @@
-// The beams of the water grid without their ends.
+// The beams of the water grid without their hits.
 
 @group(0) @binding(8) var<storage, read> surface: array<vec4f>;
 @group(0) @binding(9) var<storage, read> beams: array<vec4f>;
@@ -21,7 +21,7 @@ fn grid_rays(cell: vec2u, half: u32) -> Beam {
     return b;
 }
 
-// The same by number: two beams a cell, row by row.
+// The same by beam index: two beams per cell, row by row.
 fn numbered_rays(beam_index: u32) -> Beam {
     let cell = beam_index >> 1u;
     return grid_rays(vec2u(cell % light.cells, cell / light.cells), beam_index & 1u);

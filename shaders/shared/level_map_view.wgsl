@@ -1,4 +1,4 @@
-// The box a level map is drawn in; rows take mesh coordinates to (u, v) in texels and s in metres.
+// The box a level map is drawn in; rows map mesh coordinates to (u, v) in texels and s in units of the mesh.
 
 struct LevelMapView {
     u_row: vec4f,
@@ -9,8 +9,8 @@ struct LevelMapView {
     texels: u32,
     first_triangle: u32, // in vec4 units of `geometry`
     arena_offset: u32,   // first word of the map in the arena
-    level: u32,          // to be made from the one before (pyramid)
-    source_offset: u32,  // of the level before
+    level: u32,          // level that is computed from the previous one (pyramid)
+    source_offset: u32,  // of the previous level
     target_offset: u32,  // of this level
 }
 

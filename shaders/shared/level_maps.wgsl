@@ -1,10 +1,10 @@
-// Level maps in their arena: per map the min–max pyramid (front, back) from level 0 on, then one packed normal per texel of level 0,
-// then for each further layer a depth and a packed normal per texel.
+// Level maps in their arena. Each map holds its min–max pyramid (front, back) from level 0 on, then one packed normal per texel of level
+// 0, then for each further layer a depth and a packed normal per texel.
 
 @group(0) @binding(2) var<storage, read> level_maps: array<u32>;
 
 fn level_offset(size: u32, level: u32) -> u32 {
-    // Levels halve a square power of two: 2 words a texel, size² (1 + ¼ + … ) texels before this level.
+    // Levels halve a power of two: 2 words per texel, size² (1 + ¼ + … ) texels before this level.
     var offset = 0u;
     var s = size;
     for (var l = 0u; l < level; l++) {
@@ -16,10 +16,10 @@ fn level_offset(size: u32, level: u32) -> u32 {
 
 // Last bit of a back depth of level 0: the mesh ends or steps in depth here, see shaders/stages/level_map_pyramid.wgsl.
 const EDGE_MARK: u32 = 1u;
-// What the march returns where only the mesh itself can tell.
+// Result of the march at an edge texel, where the mesh itself must be intersected.
 const AT_EDGE: f32 = -2.0;
 
-// (front, back) depth s of a texel of a level; front = EMPTY_DEPTH where there is nothing.
+// (front, back) depth s of a texel of a level; front = EMPTY_DEPTH where it is empty.
 fn level_map_depths(map_offset: u32, size: u32, level: u32, texel: vec2i) -> vec2f {
     let side = i32(size >> level);
     if any(texel < vec2i(0)) || any(texel >= vec2i(side)) { return vec2f(EMPTY_DEPTH, -EMPTY_DEPTH); }
@@ -33,14 +33,14 @@ fn layer_word(r: Receiver, layer: u32, texel: vec2i) -> u32 {
     return r.level_map_offset + level_offset(r.map_width, r.level_count) + 2u * layer * texels + u32(texel.y) * r.map_width + u32(texel.x);
 }
 
-// Depth s of a layer at a texel; EMPTY_DEPTH where there is nothing.
+// Depth s of a layer at a texel; EMPTY_DEPTH where it is empty.
 fn layer_depth(r: Receiver, layer: u32, texel: vec2i) -> f32 {
     if layer == 0u { return level_map_depths(r.level_map_offset, r.map_width, 0u, texel).x; }
     if any(texel < vec2i(0)) || any(texel >= vec2i(i32(r.map_width))) { return EMPTY_DEPTH; }
     return bitcast<f32>(level_maps[layer_word(r, layer, texel) - r.map_width * r.map_width]);
 }
 
-// Front depth between texel centres, or the nearest texel's where a neighbour is empty or `gap` away in depth.
+// Front depth interpolated between texel centres, or the nearest texel's if a neighbour is empty or more than `gap` away in depth.
 fn smooth_front(r: Receiver, uv: vec2f, gap: f32) -> f32 {
     let base = floor(uv - 0.5);
     let f = uv - 0.5 - base;
@@ -61,15 +61,15 @@ fn is_edge_texel(map_offset: u32, size: u32, texel: vec2i) -> bool {
     return (level_maps[word + 1u] & EDGE_MARK) != 0u;
 }
 
-// Whether the last march ended below the front of its texel by more than a texel: the ray came in through a side or from behind, as
-// it does where a solid gets thin towards its silhouette and a tilted ray strikes its far side.
-var<private> came_from_aside: bool = false;
+// Whether the last march ended more than a texel below the front of its texel: the ray entered through a side or from behind. This happens
+// where a solid becomes thin towards its silhouette and a tilted ray hits its far side.
+var<private> entered_through_side: bool = false;
 
-// Where a ray (map space, t in m) enters what the level map holds, between t_min and t_max; t < 0: nowhere, or AT_EDGE where it
-// comes to an edge texel first.
-// Hierarchical walk: cells whose depth interval the ray's own interval misses are passed whole.
+// Distance t (m) at which a ray in map space enters the solid of the level map, between t_min and t_max. t < 0: no hit, or AT_EDGE if it
+// reaches an edge texel first.
+// Hierarchical traversal: cells whose depth interval does not overlap the ray's interval are skipped whole.
 fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> f32 {
-    came_from_aside = false;
+    entered_through_side = false;
     let side = f32(r.map_width);
     // Clip to the box of the map.
     var t_in = t_min;
@@ -110,7 +110,7 @@ fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_m
         let depths = level_map_depths(r.level_map_offset, r.map_width, level, cell);
         if max(s_0, s_1) >= depths.x && min(s_0, s_1) <= depths.y {
             if level == 0u {
-                came_from_aside = s_0 > depths.x + r.s_per_m * inverseSqrt(r.density_per_flux);
+                entered_through_side = s_0 > depths.x + r.s_per_m * inverseSqrt(r.density_per_flux);
                 if s_0 >= depths.x || abs(direction.z) < 1e-20 { return t; }
                 return clamp(t + (depths.x - s_0) / direction.z, t, t_leave);
             }
@@ -121,8 +121,8 @@ fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_m
             continue;
         }
         if t_leave >= t_out { return -1.0; }
-        // Step over the nearer edge; up a level only where that leaves the parent, so that a ray on an edge cannot come back
-        // to a cell it has left: every step is a whole cell forward.
+        // Step over the nearer edge. Go up a level only if the step leaves the parent, so that a ray on an edge cannot return to a cell it
+        // has left: every step is a whole cell forward.
         t = t_leave;
         let parent = cell >> vec2u(1u);
         if t_x <= t_y { cell.x += i32(step_sign.x); } else { cell.y += i32(step_sign.y); }
@@ -133,6 +133,6 @@ fn march_level_map(r: Receiver, origin: vec3f, direction: vec3f, t_min: f32, t_m
             cell = cell >> vec2u(1u);
         }
     }
-    // Out of steps: what is this hard to get through counts as solid, so that no light leaks.
+    // Out of steps: count it as a hit, so that no light leaks.
     return t;
 }

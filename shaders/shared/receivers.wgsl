@@ -1,12 +1,12 @@
-// Receivers of light and what a ray strikes first.
+// Receivers of light, and hits of rays on them.
 //
-// Receiver 0 is the floor plane, the rest are objects behind their level maps, each with one receiver per layer: object k has
-// receivers 1 + k·layers … Map space of a receiver: (u, v) in texels of
-// its irradiance map, s along the map's axis (floor: metres, below the plane is s > 0; objects: units of the mesh).
+// Receiver 0 is the floor plane. The others are objects, represented by their level maps, with one receiver per layer: object k has
+// receivers 1 + k·layers … Map space of a receiver: (u, v) in texels of its irradiance map, s along the map's axis (floor: metres, s > 0 is
+// below the plane; objects: units of the mesh).
 
 const NO_RECEIVER: i32 = -1;
 const FLOOR: i32 = 0;
-// Where a map lies that nobody asks for: light that lands there goes straight into the account.
+// Offset of a map that is not requested: light that lands there is only added to the energy account.
 const NOWHERE: u32 = 0xffffffffu;
 const EMPTY_DEPTH: f32 = 1e30;
 const MARCH_STEPS: u32 = 1024u;
@@ -17,12 +17,12 @@ struct Receiver {
     s_row: vec4f,
     map_width: u32,
     map_height: u32,
-    map_offset: u32,        // first texel in the flux sums; NOWHERE: nobody asks for the map
+    map_offset: u32,        // first texel in the flux sums; NOWHERE: the map is not requested
     level_map_offset: u32,  // first word of the level map in the arena
     s_min: f32,
     s_max: f32,
     level_count: u32,       // mip levels of the level map; 0 for the floor
-    density_per_flux: f32,  // 1 / (area that a texel shows to the map's axis, m²)
+    density_per_flux: f32,  // 1 / (area of a texel projected along the map's axis, m²)
     axis: vec4f,            // unit direction of the map's axis in local space
     irradiance_offset: u32, // first texel in the irradiance array; NOWHERE as above
     s_per_m: f32,           // units of s per metre along the axis

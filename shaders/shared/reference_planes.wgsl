@@ -1,10 +1,10 @@
-// Reference planes (Tipprasert 2006, §4.2.1, §4.4): which plane each texel of a level map belongs to, and where rays meet them.
+// Reference planes (Tipprasert 2006, §4.2.1, §4.4): the plane of each texel of a level map, and the hits of rays on planes.
 
 fn plane_s(r: Receiver, plane: u32) -> f32 {
     return plane_depth(r.s_min, r.s_max, f32(r.planes), f32(plane));
 }
 
-// The plane that accepts a texel: the only one within half a distance of what lies there; −1 where nothing does.
+// The plane that accepts a texel: the only one within half a plane distance of the texel's depth; −1 for an empty texel.
 fn plane_of_texel(r: Receiver, texel: vec2i) -> i32 {
     let depth = level_map_depths(r.level_map_offset, r.map_width, 0u, texel).x;
     if depth >= EMPTY_DEPTH { return -1; }
@@ -16,11 +16,11 @@ fn goes_down(r: Receiver, direction: vec3f) -> bool {
     return direction.z > 1e-6 * r.s_per_m;
 }
 
-// Where a ray (map space, t in m) meets the first plane that accepts it nearer than t_max, or NO_RECEIVER.
+// The first hit of a ray (map space, t in m) on a plane that accepts the texel there, nearer than t_max; else NO_RECEIVER.
 fn trace_planes(r: Receiver, number: u32, origin: vec3f, direction: vec3f, t_max: f32) -> Hit {
     let nothing = Hit(vec2f(0.0), t_max, NO_RECEIVER);
     if !goes_down(r, direction) { return nothing; }
-    // Only planes that the ray meets over the map are asked.
+    // Only planes that the ray crosses within the map are tested.
     var t_in = 0.0;
     var t_out = t_max;
     for (var a = 0; a < 2; a++) {

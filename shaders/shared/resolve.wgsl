@@ -1,23 +1,23 @@
-// From flux sums to W/m²: what the passes that finish a light's maps share.
+// Converts flux sums to W/m²; shared by the passes that finish a light's maps.
 
 struct Resolve {
-    power: vec4f,          // of a sun the irradiance of a plane facing it, W/m²; of a point light its intensity, W/sr
-    first_texel: u32,      // piece of the flux sums
+    power: vec4f,          // sun: irradiance of a plane facing it, W/m²; point light: intensity, W/sr
+    first_texel: u32,      // range of the flux sums
     texel_count: u32,
     first_output: u32,     // first texel in the irradiance array
-    adds: u32,             // 1: add to what is there
-    density_per_flux: f32, // of a piece that is one map, 1/m²
-    receiver_count: u32,   // of a piece that holds the maps of receivers 1 … this, one behind the other; else 0
+    adds: u32,             // 1: add to the old value
+    density_per_flux: f32, // for a range that is one map, 1/m²
+    receiver_count: u32,   // for a range that holds the maps of receivers 1 … this, one behind the other; else 0
     pad_0: u32,
     pad_1: u32,
 }
 
 @group(0) @binding(13) var<uniform> resolve: Resolve;
 
-// 1 / (area of a texel that lies at `texel` of the flux sums, m²).
+// 1 / (area of the texel with index `texel` in the flux sums, m²).
 fn density_at(texel: u32) -> f32 {
     if resolve.receiver_count == 0u { return resolve.density_per_flux; }
-    // The last receiver whose map begins here or before; a dry object's has no texels, and the next one begins where it does.
+    // The last receiver whose map begins at or before `texel`. A dry object's map has no texels, so the next map begins at the same place.
     var low = 1u;
     var high = resolve.receiver_count;
     while low < high {
@@ -27,7 +27,7 @@ fn density_at(texel: u32) -> f32 {
     return receivers[low].density_per_flux;
 }
 
-// Irradiance that texel `index` of the piece got from the light, W/m².
+// Irradiance of texel `index` of the range from the light, W/m².
 fn resolved_w_m2(index: u32) -> vec3f {
     let texel = resolve.first_texel + index;
     return flux_colour(texel, light.channels) * (density_at(texel) / light.flux_scale) * resolve.power.xyz;

@@ -1,16 +1,16 @@
-// The first receiver a light ray strikes under water: the floor exactly, meshes by their level maps, and by their triangles where
-// the level map has an edge. Silhouettes are then as sharp as the mesh, whatever the level map's texels.
+// The first receiver that a light ray hits under water. The floor is intersected exactly; meshes by their level maps, and by their
+// triangles where the level map has an edge. Silhouettes are therefore as sharp as the mesh, whatever the level map's resolution.
 //
-// With further layers the mesh itself is also asked where a ray does not come in through the front: there the march would stop at the
-// texel's side and call it the first surface.
+// With further layers the mesh itself is also intersected if a ray does not enter through the front, because there the march would stop at
+// the texel's side and take it for the first surface.
 
 const FAR_M: f32 = 1e6;
-// Texels in depth that a surface is held for farther away when it stands across what was struck; when it faces the other way, twice;
-// and once more when one of the two faces the light's axis and the other does not.
+// Penalty, in texels of depth, when a layer's normal differs from that of the hit triangle: once for a right angle, twice for opposite
+// normals, and once more if only one of the two faces the light's axis.
 const TURNED_TEXELS: f32 = 8.0;
 
-// The layer that a hit at `q` (map space) belongs to: of the surfaces at its texel the one nearest in depth that faces as the
-// triangle does. At a rim two surfaces meet, and depth alone would give a stripe of the one to the other.
+// The layer that a hit at `q` (map space) belongs to: the surface at its texel that is nearest in depth and faces like the triangle. At a
+// rim two surfaces meet, and depth alone would assign a stripe of one to the other.
 fn layer_of(r: Receiver, index: u32, q: vec3f, met: MeshHit) -> u32 {
     let texel = clamp(vec2i(floor(q.xy)), vec2i(0), vec2i(i32(r.map_width) - 1));
     let normal = (1.0 - met.u - met.v) * unpack_normal(geometry[met.triangle].w) + met.u * unpack_normal(geometry[met.triangle + 1u].w)
@@ -35,7 +35,7 @@ fn layer_of(r: Receiver, index: u32, q: vec3f, met: MeshHit) -> u32 {
     return best;
 }
 
-// Where the ray strikes object `index` nearer than t_max, or NO_RECEIVER.
+// The hit of a ray on object `index` nearer than t_max, or NO_RECEIVER.
 fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> Hit {
     let nothing = Hit(vec2f(0.0), t_max, NO_RECEIVER);
     let number = first_receiver_of(index);
@@ -45,7 +45,7 @@ fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> H
     let d = direction_to_map(r, direction);
     if PLANES { return trace_planes(r, number, o, d, t_max); }
     let t = march_level_map(r, o, d, 0.0, t_max);
-    if t == AT_EDGE || (light.layers > 1u && t >= 0.0 && came_from_aside) {
+    if t == AT_EDGE || (light.layers > 1u && t >= 0.0 && entered_through_side) {
         let met = trace_instance(index, origin, direction, 0.0, t_max);
         if met.t >= t_max { return nothing; }
         let q = o + d * met.t;
@@ -54,26 +54,26 @@ fn trace_level_map(index: u32, origin: vec3f, direction: vec3f, t_max: f32) -> H
         return Hit(q.xy, met.t, i32(number + layer));
     }
     if t < 0.0 || t >= t_max { return nothing; }
-    // The march ends on a flat texel; once more with the depth between texels.
+    // The march ends on a flat texel; refine the hit with the interpolated depth.
     var t_fine = t;
     if d.z > 1e-6 {
         let uv = (o + d * t).xy;
         let slope_gap = 4.0 * (r.s_max - r.s_min) / f32(r.map_width);
         let s = smooth_front(r, uv, slope_gap);
         let candidate = (s - o.z) / d.z;
-        // Only where the ray came through the front, not through a side.
+        // Only if the ray entered through the front, not through a side.
         if abs(candidate - t) * d.z < slope_gap && candidate > 0.0 { t_fine = candidate; }
     }
     return Hit((o + d * t_fine).xy, t_fine, i32(number));
 }
 
-// First hit over the floor, if there is one, and `count` objects.
+// First hit on the floor, if there is one, and on `count` objects.
 fn trace_light(origin: vec3f, direction: vec3f, count: u32, has_floor: bool) -> Hit {
-    // What goes up from a light under water ends at the level of the water at rest.
+    // Rays that go up from a light under water end at the level of the water at rest.
     var reach = FAR_M;
     if light.kind == SUBMERGED && direction.y > 0.0 { reach = clamp(-origin.y / direction.y, 0.0, FAR_M); }
     var best = Hit(vec2f(0.0), reach, NO_RECEIVER);
-    var beside = Hit(vec2f(0.0), FAR_M, NO_RECEIVER); // on the floor's plane, beside its rectangle
+    var beside = Hit(vec2f(0.0), FAR_M, NO_RECEIVER); // on the floor's plane, outside its rectangle
     if has_floor {
         let r = receivers[FLOOR];
         let t = floor_distance(r, origin, direction);
@@ -84,7 +84,7 @@ fn trace_light(origin: vec3f, direction: vec3f, count: u32, has_floor: bool) -> 
         }
     }
     let inverse = safe_inverse(direction);
-    // Light that enters beside this rectangle misses all objects, however the waves tilt it.
+    // Light that enters outside this rectangle misses all objects, whatever the slope of the waves.
     let may_meet = all(origin.xz >= light.objects_min_m) && all(origin.xz <= light.objects_max_m);
     let end = select(0u, instance_nodes(count), may_meet);
     var node = 0u;

@@ -1,7 +1,7 @@
-// Flux that a light of unit power sends through a triangle of the grid.
+// Flux of a light of unit power through a triangle of the grid.
 
-// Of a sun the area that the water shows it, m² (under 1 W/m²); of a point light the solid angle, sr (at 1 W/sr): exact however
-// near it is. Below 0 where the water looks away.
+// For a sun the area projected towards it, m² (at 1 W/m²); for a point light the solid angle, sr (at 1 W/sr), exact at any distance.
+// Negative where the water faces away.
 fn signed_unit_flux(origin: mat3x3f, direction: mat3x3f) -> f32 {
     if light.kind == SUBMERGED {
         return solid_angle(direction[0], direction[1] - direction[0], direction[2] - direction[0]);

@@ -1,4 +1,4 @@
-// The camera and the medium it looks into; the uniform of all passes that follow a picture.
+// The camera and the medium it looks into; the uniform of all passes that make a picture.
 
 struct View {
     eye: vec4f,
@@ -27,13 +27,13 @@ struct View {
     sky_transmittance: f32,
     sky_path_factor: f32,
     layers: u32,          // receivers of an object: its surfaces along the light, nearest first
-    sample_index: u32,    // samples that the picture already holds
-    sample_offset: vec2f, // of the ray from the pixel's middle, pixels
+    sample_index: u32,    // number of samples that the picture already holds
+    sample_offset: vec2f, // offset of the ray from the pixel's centre, pixels
 }
 
 @group(0) @binding(0) var<uniform> view: View;
 
-// What a sample whose march along the water ended early adds to its pixel's notes; one that sees the floor beside its map adds 1.
+// Added to a pixel's notes by a sample whose march along the water ran out of steps; a sample that sees the floor outside its map adds 1.
 const MARCH_UNFINISHED: f32 = 128.0;
 
 // Index of the invocation's pixel within the band, or the pixel count where there is none.

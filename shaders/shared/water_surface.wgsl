@@ -1,4 +1,4 @@
-// The water surface from its components.
+// The water surface as a sum of sine components.
 
 struct Wave {
     amplitude_m: f32,

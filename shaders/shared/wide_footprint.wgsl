@@ -1,9 +1,9 @@
-// Footprints of very many texels, shared out over lanes.
+// Footprints of very many texels, distributed over lanes.
 
-// Deposits texels `first`, `first + stride` … of a wide footprint's box by their areas; returns the share beside the map.
+// Deposits texels `first`, `first + stride` … of a wide footprint's box by their areas; returns the share outside the map.
 //
-// All is counted from the texel: neighbouring beams then round alike and leave no seam, and what rounding leaves is small against the
-// texel, not against the footprint.
+// Coordinates are relative to the texel: neighbouring beams then round in the same way and leave no seam, and rounding errors are small
+// relative to the texel, not to the footprint.
 fn deposit_texels(target_map: Target, uv: mat3x2f, arriving: vec3f, first: u32, stride: u32) -> f32 {
     let size = vec2i(target_map.width, target_map.height);
     let box = texel_box(target_map, uv[0], uv[1], uv[2]);
@@ -20,7 +20,7 @@ fn deposit_texels(target_map: Target, uv: mat3x2f, arriving: vec3f, first: u32, 
     return beside;
 }
 
-// Share of a texel: how much of the footprint's area lies in it.
+// Share of the footprint's area that lies in a texel.
 fn texel_share(uv: mat3x2f, size: vec2i, texel: vec2i, per_area: f32) -> f32 {
     let base = vec2f(texel);
     let p = uv[0] - base;

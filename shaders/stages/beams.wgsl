@@ -1,4 +1,4 @@
-// Beams — which way does light go just under each water vertex, and how much of it? One invocation per grid vertex.
+// Beams — direction of the refracted light and transmittance at each water vertex. One invocation per grid vertex.
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
 #import "lib/octahedral.wgsl"
@@ -8,7 +8,7 @@
 #import "shared/entry.wgsl"
 
 @group(0) @binding(8) var<storage, read> surface: array<vec4f>;
-// Per vertex: unit direction under water, transmittance T (0 where the surface looks away from the light).
+// Per vertex: unit direction under water, transmittance T (0 where the surface faces away from the light).
 @group(0) @binding(9) var<storage, read_write> beams: array<vec4f>;
 
 @compute @workgroup_size(64)

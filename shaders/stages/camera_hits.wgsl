@@ -1,5 +1,5 @@
-// Camera hits — what does each pixel see, and through which media? One invocation per pixel: the ray meets the water where it is,
-// is refracted there, and goes on to the first surface.
+// Camera hits — the surface that each pixel sees, and the media in between. One invocation per pixel: the ray is intersected with the
+// actual water surface, refracted there, and traced on to the first surface.
 #import "lib/turns.wgsl"
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
@@ -9,22 +9,22 @@
 #import "shared/view.wgsl"
 #import "shared/points.wgsl"
 
-// What pixels see.
+// The points that pixels see.
 @group(0) @binding(16) var<storage, read_write> points: array<Point>;
 // Distance along the viewing axis to the first surface, water included (m).
 @group(0) @binding(17) var<storage, read_write> visible_depth: array<f32>;
-// Diffuse reflectance, way under water between surface seen and camera (m).
+// Diffuse reflectance, path length under water between surface seen and camera (m).
 @group(0) @binding(18) var<storage, read_write> visible_albedo: array<vec4f>;
-// Factor on the radiance of the surface seen, factor on the sky's, way of the sky's light under water (m), notes.
+// Factor on the radiance of the surface seen, factor on the sky's, path length of the sky's light under water (m), notes.
 @group(0) @binding(19) var<storage, read_write> visible_transport: array<vec4f>;
 
 const MARCH_STEPS: u32 = 160u;
 const SURFACE_TOLERANCE_M: f32 = 2e-5;
-// Where a ray that has met the water starts to look: as far before that point as the point may lie behind the water, so that what is
-// just under the surface is not jumped.
+// Start of the search along a refracted or reflected ray: as far before the found point on the water as that point may lie behind the true
+// surface, so that objects just under the surface are not missed.
 const START_M: f32 = -2.0 * SURFACE_TOLERANCE_M;
 
-// MARCH_UNFINISHED where the march along the water ended before it met the water or was away from it.
+// MARCH_UNFINISHED if the march ran out of steps before it hit the water or was clear of it.
 var<private> notes: f32;
 
 struct Ray {
@@ -40,17 +40,17 @@ fn pixel_ray(x: u32, y: u32) -> Ray {
     return Ray(view.eye.xyz, normalize(view.forward.xyz + offset));
 }
 
-// Signed height over the water: above > 0.
+// Signed height over the water: > 0 above it.
 fn over_water(p: vec3f) -> f32 {
     return p.y - water_surface_at(p.xz, view.wave_count).x;
 }
 
-// Where a ray that starts on `side` (1 above, −1 below) of the surface crosses it; < 0: not before t_max. Steps are bounded by the
-// steepest slope, so no crest is jumped; the last bracket is closed by false position.
+// Distance at which a ray that starts on `side` (1 above, −1 below) of the surface crosses it; < 0: not before t_max. Steps are bounded by
+// the steepest slope, so no crest is skipped; the last bracket is refined by false position.
 fn meet_water(ray: Ray, side: f32, t_max: f32) -> f32 {
     let d = ray.direction;
     var t = 0.0;
-    // Skip what lies outside the slab the waves live in.
+    // Skip the part outside the slab that contains the waves.
     let gap = side * ray.origin.y - view.max_height_m;
     if gap > 0.0 {
         if side * d.y >= 0.0 { return -1.0; }
@@ -58,7 +58,7 @@ fn meet_water(ray: Ray, side: f32, t_max: f32) -> f32 {
     }
     let rate = abs(d.y) + view.max_slope * length(d.xz);
     if rate <= 0.0 { return -1.0; }
-    // A ray that starts at a wave and leaves it has not met it yet.
+    // A ray that starts at a wave and leaves it has not hit the water yet.
     var leaves = false;
     if t == 0.0 {
         let slope = water_surface_at(ray.origin.xz, view.wave_count).yz;
@@ -81,7 +81,7 @@ fn meet_water(ray: Ray, side: f32, t_max: f32) -> f32 {
         t += max(f / rate, SURFACE_TOLERANCE_M);
     }
     notes = MARCH_UNFINISHED;
-    // One that still runs along the wave it started at goes away from it.
+    // A ray that still runs along the wave it started at counts as leaving it.
     return select(t, -1.0, leaves);
 }
 
@@ -117,14 +117,14 @@ struct Pixel {
     seen: Seen,
     position: vec3f,
     first_m: f32, // path to the first surface, water included
-    reach_m: f32, // path to the surface seen, as long as it looks through the water
+    reach_m: f32, // apparent path length to the surface seen, through the water
     path_m: f32,
     weight: f32,
     sky_weight: f32,
     sky_path_m: f32,
 }
 
-fn look_from_air(ray: Ray) -> Pixel {
+fn trace_from_air(ray: Ray) -> Pixel {
     let t_water = meet_water(ray, 1.0, VERY_FAR_M);
     let limit = select(VERY_FAR_M, t_water, t_water >= 0.0);
     let dry = trace_scene(ray, 0.0, limit);
@@ -147,7 +147,7 @@ fn look_from_air(ray: Ray) -> Pixel {
     return Pixel(seen, p + refracted.xyz * seen.t, t_water, t_water + seen.t / view.ior, max(seen.t, 0.0), weight, reflectance, 0.0);
 }
 
-fn look_from_water(ray: Ray) -> Pixel {
+fn trace_from_water(ray: Ray) -> Pixel {
     let t_water = meet_water(ray, -1.0, VERY_FAR_M);
     let limit = select(VERY_FAR_M, t_water, t_water >= 0.0);
     let wet = trace_scene(ray, 0.0, limit);
@@ -163,7 +163,7 @@ fn look_from_water(ray: Ray) -> Pixel {
     let cos_i = clamp(-dot(ray.direction, normal), 0.0, 1.0);
     let reflectance = fresnel_reflectance(cos_i, 1.0 / view.ior);
     let out_weight = (1.0 - reflectance) * view.ior * view.ior;
-    // What stands in the air hides the sky, and outshines the mirror image of what stands in the water: one surface a pixel.
+    // An object in the air hides the sky and outshines the mirror image of objects in the water; a pixel has only one surface.
     let leaving = refract_direction(ray.direction, normal, 1.0 / view.ior);
     if leaving.w > 0.0 {
         let above = trace_objects(view.instance_count, p, leaving.xyz, START_M, VERY_FAR_M);
@@ -184,7 +184,7 @@ fn camera_hits_main(@builtin(global_invocation_id) id: vec3u) {
     let ray = pixel_ray(id.x, id.y + view.first_row);
     notes = 0.0;
     var pixel: Pixel;
-    if over_water(ray.origin) >= 0.0 { pixel = look_from_air(ray); } else { pixel = look_from_water(ray); }
+    if over_water(ray.origin) >= 0.0 { pixel = trace_from_air(ray); } else { pixel = trace_from_water(ray); }
     let seen = pixel.seen.receiver >= 0;
     var receiver = f32(pixel.seen.receiver);
     if seen && over_water(pixel.position) > SURFACE_TOLERANCE_M { receiver = -2.0 - receiver; }

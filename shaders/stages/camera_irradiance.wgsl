@@ -1,5 +1,5 @@
-// Camera irradiance — how much light falls on what each pixel sees? One invocation per pixel: the receiver's maps under water,
-// the lights themselves above it, and the sky on both.
+// Camera irradiance — irradiance of the surface that each pixel sees. One invocation per pixel: from the receiver's maps under water, from
+// the lights directly above it, and from the sky on both sides.
 #import "lib/sky.wgsl"
 #import "shared/view.wgsl"
 #import "shared/points.wgsl"
@@ -9,11 +9,11 @@
 #import "shared/level_maps.wgsl"
 
 struct AirLight {
-    source: vec4f, // of a sun the unit direction to it, w 0; of a point light its place, local m, w 1
+    source: vec4f, // sun: unit direction to it, w 0; point light: its position, local m, w 1
     power: vec4f,  // irradiance of a plane facing the sun, W/m²; intensity of the point light, W/sr
 }
 
-// Least |cosine| between surface and map axis that is reckoned with: below it a surface shows the axis nothing.
+// Least |cosine| between surface normal and map axis: below it a surface is seen edge-on from the axis.
 const LEAST_COSINE: f32 = 1e-6;
 
 // Receivers of all lights, light by light.
@@ -28,7 +28,7 @@ fn texel_value(offset: u32, width: u32, texel: vec2u) -> vec3f {
     return vec3f(irradiance[at], irradiance[at + 1u], irradiance[at + 2u]);
 }
 
-// The floor's map between texel centres.
+// The floor's map, interpolated between texel centres.
 fn floor_irradiance(r: Receiver, uv: vec2f) -> vec3f {
     let size = vec2f(f32(r.map_width), f32(r.map_height));
     let q = clamp(uv - 0.5, vec2f(0.0), size - 1.0);
@@ -40,10 +40,10 @@ fn floor_irradiance(r: Receiver, uv: vec2f) -> vec3f {
     return mix(near, far, f.y);
 }
 
-// An object's maps, one per layer from receiver `first` on: texels of the layer that lies at the point's own depth count, so what is
-// hidden from the light stays dark and silhouettes take nothing from beside them. What faces away from the axis is lit by tilted
-// rays alone, and is no first surface: it is looked up in the further layers. The steeper it stands, the less of its light one
-// texel knows: beyond 8 texels of depth per texel neighbours are no longer asked.
+// Interpolates an object's maps, one per layer from receiver `first` on. Only texels of the layer at the point's own depth count, so
+// surfaces hidden from the light stay dark and silhouettes take no light from their surroundings. A surface that faces away from the axis
+// is lit only by tilted rays and is never the first surface, so it is looked up in the further layers. The steeper the surface, the more
+// depth a texel spans; the tolerance grows up to 8 texels of depth per texel.
 fn object_irradiance(first: u32, p: vec3f, normal: vec3f) -> vec3f {
     let r = all_receivers[first];
     let towards = -dot(normal, r.axis.xyz);
@@ -77,7 +77,7 @@ fn object_irradiance(first: u32, p: vec3f, normal: vec3f) -> vec3f {
     return sum * (cosine / weights);
 }
 
-// Suns and point lights over the water on a dry place.
+// Irradiance of a dry place from suns and point lights over the water.
 fn lights_in_air(p: vec3f, normal: vec3f) -> vec3f {
     let from_m = p + normal * 1e-3;
     var sum = vec3f(0.0);
@@ -86,10 +86,10 @@ fn lights_in_air(p: vec3f, normal: vec3f) -> vec3f {
         var reach_m = VERY_FAR_M;
         var per_power = 1.0;
         if air_lights[i].source.w == 1.0 {
-            let way = air_lights[i].source.xyz - from_m;
-            let length2 = max(dot(way, way), 1e-12);
+            let to_source = air_lights[i].source.xyz - from_m;
+            let length2 = max(dot(to_source, to_source), 1e-12);
             reach_m = sqrt(length2);
-            to_light = way / reach_m;
+            to_light = to_source / reach_m;
             per_power = 1.0 / length2;
         }
         let cosine = dot(normal, to_light);

@@ -1,5 +1,4 @@
-// Coarse irradiance — what the light that is done again coarsely leaves at the places where the estimate looks. One invocation per
-// few places.
+// Coarse irradiance — irradiance from coarse beam sets at the places that the estimate compares. One invocation per PLACES_EACH places.
 #import "lib/attenuation.wgsl"
 #import "shared/light.wgsl"
 #import "shared/flux.wgsl"
@@ -8,14 +7,14 @@
 #import "shared/comparison.wgsl"
 
 struct CoarseLight {
-    power: vec4f,          // as of `Resolve`
-    first_group: u32,      // of the places that this light reaches
+    power: vec4f,          // as in `Resolve`
+    first_group: u32,      // first workgroup of the places that this light reaches
     group_count: u32,
     comparison_count: u32, // of all lights
-    adds: u32,             // 1: add to what is there
+    adds: u32,             // 1: add to the old value
 }
 
-// Linear RGB per place, as the irradiance pass has it per texel.
+// Linear RGB per place, in the units of the irradiance pass.
 @group(0) @binding(12) var<storage, read_write> coarse_irradiance: array<f32>;
 @group(0) @binding(13) var<uniform> coarse_light: CoarseLight;
 
@@ -23,7 +22,7 @@ fn coarse_at(c: Comparison, at: vec2u) -> vec3f {
     return flux_colour(c.first_coarse + at.y * c.coarse_width + at.x, light.channels);
 }
 
-// The coarse map between its texels' centres, as a camera looks it up, at the middle of a fine texel.
+// The coarse map interpolated at the centre of a fine texel, as for a camera.
 fn coarse_between(c: Comparison, at: vec2u) -> vec3f {
     let size = vec2f(f32(c.coarse_width), f32(c.coarse_height));
     let per_fine = size / vec2f(f32(c.fine_width), f32(c.fine_height));

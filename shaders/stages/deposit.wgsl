@@ -1,5 +1,5 @@
-// Deposit — how much light lands where? One invocation per water cell: its two beams are laid on their receiver's map. Beams that
-// straddle receivers go to the split queue, footprints of very many texels or of no area to the wide queue.
+// Deposit — adds the flux of beams to the receivers' maps. One invocation per water cell, which deposits the cell's two beams. Beams that
+// straddle receivers go to the split queue, footprints of very many texels or without area to the wide queue.
 #import "lib/attenuation.wgsl"
 #import "lib/coverage.wgsl"
 #import "lib/solid_angle.wgsl"
@@ -34,12 +34,12 @@ fn push_wide(beam_index: u32) {
     atomicMax(&wide_queue[0], min(slot + 1u, MOST_GROUPS));
 }
 
-// The largest of what the workgroup's cells emit, as the bits of an f32, which order like the numbers.
+// The largest emitted flux of the workgroup's cells, as the bits of an f32, which order like the numbers.
 var<workgroup> largest: atomic<u32>;
-// Counts of the largest cell's flux when the scale is its own: all 64 cells fit u32 together.
+// Counts of the largest cell's flux at the workgroup's own scale: all 64 cells fit u32 together.
 const CELL_COUNTS: f32 = 16777216.0;
 
-// How much finer a workgroup may count whose cells emit at most `most`; a power of two.
+// Factor by which a workgroup may count finer if each of its cells emits at most `most`; a power of two.
 fn finer_for(most: f32) -> f32 {
     if most <= 0.0 { return 1.0; }
     let room = min(CELL_COUNTS / (most * light.triangle_scale), light.energy_scale / light.triangle_scale);
@@ -58,15 +58,15 @@ fn deposit_beam(cell: vec2u, half: u32) -> CellSums {
     let beam_index = 2u * (cell.y * light.cells + cell.x) + half;
     if b.transmitted == 0.0 { return sums; }
     if !is_whole(b) {
-        // Its parts are accounted for where they are followed: their surface is not quite the beam's.
+        // The split pass accounts for its parts, because their water surface differs slightly from the beam's.
         push_split(beam_index);
         return CellSums(0.0, 0.0, sums.losses);
     }
-    if ends_nowhere(b) {
+    if hits_nothing(b) {
         sums.losses.missed = b.transmitted;
         return sums;
     }
-    // By planes meshes get their light in another pass.
+    // With reference planes another pass lights the meshes.
     if PLANES && b.receiver.x > FLOOR { return sums; }
     sums.losses.extinguished = b.transmitted * mean_extinction(b.t);
     let arriving = b.transmitted * mean_transmission(b.t);
@@ -102,7 +102,7 @@ fn deposit_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
             losses.landed += sums.losses.landed;
         }
     }
-    // To a near light far cells are smaller than the near ones by many powers of ten, and so are those that a low sun hardly sees.
+    // The flux of cells differs by many powers of ten: for a near light between near and far cells, for a low sun by slope.
     atomicMax(&largest, bitcast<u32>(emitted));
     workgroupBarrier();
     finer = finer_for(bitcast<f32>(atomicLoad(&largest)));
@@ -113,9 +113,9 @@ fn deposit_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     flush_account(invocation);
 }
 
-// Some workgroups (along y) per wide or flat footprint (along x). What lies beside the map goes straight to the global sums, lane
-// by lane and beam by beam: a sliver is far below the workgroup account's smallest count, and floats added up over several beams
-// would depend on the queue's order.
+// Several workgroups (along y) per wide or flat footprint (along x). Flux outside the map is added directly to the global sums, per lane and
+// beam: a small share is far below the workgroup account's smallest count, and float sums over several beams would depend on the queue's
+// order.
 @compute @workgroup_size(64)
 fn deposit_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let count = atomicLoad(&wide_queue[QUEUE_COUNT]);

@@ -1,5 +1,5 @@
-// Estimate — how far do the maps lie from those of the light done coarsely? One invocation compares a few places; each workgroup
-// leaves its sums, in an order that is always the same.
+// Estimate — differences between the maps and those of the coarse beam sets. One invocation compares PLACES_EACH places; each workgroup
+// stores its sums, added in a fixed order.
 #import "shared/comparison.wgsl"
 
 struct Estimate {
@@ -21,7 +21,7 @@ fn total(v: vec3f) -> f32 {
     return v.x + v.y + v.z;
 }
 
-// Sum of the fine texels of a place: of a block, or the one.
+// Sum of the fine texels of a place: a block, or one texel.
 fn fine_sum(c: Comparison, at: vec2u, side: vec2u) -> vec3f {
     var sum = vec3f(0.0);
     for (var j = 0u; j < side.y; j++) {

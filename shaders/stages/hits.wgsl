@@ -1,4 +1,4 @@
-// Hits — what does each ray strike first? One invocation per grid vertex.
+// Hits — the first receiver that each ray hits. One invocation per grid vertex.
 #import "lib/attenuation.wgsl"
 #import "lib/slicing.wgsl"
 #import "shared/light.wgsl"

@@ -1,4 +1,4 @@
-// Irradiance — the sums of one light become W/m² and join what other lights brought. One invocation per texel.
+// Irradiance — converts the flux sums of one beam set to W/m² and adds them to those of others. One invocation per texel.
 #import "lib/attenuation.wgsl"
 #import "shared/light.wgsl"
 #import "shared/flux.wgsl"
@@ -6,8 +6,8 @@
 #import "shared/floor_distance.wgsl"
 #import "shared/resolve.wgsl"
 
-// Linear RGB per texel: on the floor irradiance, W/m²; on an object the flux through the map's plane, W/m², which times the
-// cosine between surface and map axis is irradiance.
+// Linear RGB per texel. On the floor: irradiance, W/m². On an object: flux through the map's plane, W/m²; times the cosine between surface
+// normal and map axis it is irradiance.
 @group(0) @binding(12) var<storage, read_write> irradiance: array<f32>;
 
 @compute @workgroup_size(64)

@@ -1,4 +1,4 @@
-// Landed — what lies on the maps, summed where it lies: the one term of the energy account that is not noted on the way.
+// Landed — sums the flux on the maps: the only term of the energy account that is not noted when beams are deposited.
 #import "lib/attenuation.wgsl"
 #import "shared/light.wgsl"
 #import "shared/flux.wgsl"
@@ -12,10 +12,11 @@ struct Span {
 
 @group(0) @binding(13) var<uniform> span: Span;
 
-// Texels of an invocation: few workgroups have few sums to add up.
+// Texels per invocation; fewer workgroups mean fewer additions to the global account.
 const TEXELS_EACH: u32 = 64u;
 
-// Sums of 16-bit pieces of the counts, so that they stay whole numbers: equal floats added up round the same way every time.
+// Sums of 16-bit pieces of the counts, so that they stay integers: in floats, equal addends would round the same way and their errors
+// would add up.
 var<workgroup> sums: array<array<vec4u, 3>, 64>;
 
 fn pieces(texel: u32, channel: u32) -> vec4u {

@@ -1,12 +1,12 @@
-// Level map — what a light sees of a mesh through flat water. Drawn from the light: nearest (front) and farthest (back), then, for
-// further layers, each time the nearest behind what was drawn before (depth peeling: Everitt 2001).
+// Level map — the mesh's surface visible from a light through flat water. Drawn from the light: nearest (front) and farthest (back) depth,
+// then for each further layer the nearest surface behind the previous one (depth peeling: Everitt 2001).
 #import "shared/level_map_view.wgsl"
 #import "shared/normals.wgsl"
 
 @group(0) @binding(14) var<storage, read> geometry: array<vec4u>;
 @group(0) @binding(23) var previous_depth: texture_2d<f32>;
 
-// Share of the map's depth by which a layer lies behind the one before; nearer it is the same surface, rounded.
+// Least distance between successive layers, as a share of the map's depth; a nearer surface is the same one with rounding.
 const SAME_SURFACE: f32 = 1e-5;
 
 struct Vertex {

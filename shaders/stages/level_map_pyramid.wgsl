@@ -1,5 +1,5 @@
-// Level map pyramid — the drawn map goes into the arena, and each level above holds the least front and the largest back of four.
-// Texels where the mesh ends or steps in depth are marked: there rays are tried against the mesh itself.
+// Level map pyramid — stores the drawn map in the arena; each higher level holds the least front and the largest back of four texels.
+// Texels where the mesh ends or steps in depth are marked: there rays are intersected with the mesh itself.
 #import "shared/level_map_view.wgsl"
 
 const EMPTY_DEPTH: f32 = 1e30;
@@ -15,8 +15,8 @@ const EDGE_MARK: u32 = 1u;
 // Steepest step between neighbouring texels, in texels, that still counts as one surface.
 const CONNECTED_STEP: f32 = 8.0;
 
-// How deep what the texel holds reaches: the back that was drawn, and down to connected neighbours. A single sheet is a stair of
-// flat texels without thickness; a ray that leaves one step above it and enters the next below it would slip through.
+// Back depth of a texel: the drawn back, extended down to connected neighbours. Without this a single sheet would be a stair of flat texels
+// without thickness, and a ray that leaves one step above it and enters the next below it would slip through.
 fn closed_back(texel: vec2i, front: f32, back: f32) -> f32 {
     let reach = CONNECTED_STEP / length(level_map_view.u_row.xyz);
     var deepest = max(back, front);
@@ -25,7 +25,7 @@ fn closed_back(texel: vec2i, front: f32, back: f32) -> f32 {
         let neighbour = texel + step;
         if any(neighbour < vec2i(0)) || any(neighbour >= vec2i(i32(level_map_view.texels))) { continue; }
         let depths = vec2f(textureLoad(front_depth, neighbour, 0).x, textureLoad(back_depth, neighbour, 0).x);
-        // Its nearer or its farther sheet may be the continuation of either of ours.
+        // Either sheet of the neighbour may continue either sheet of this texel.
         for (var k = 0; k < 2; k++) {
             if min(abs(depths[k] - front), abs(depths[k] - back)) <= reach { deepest = max(deepest, depths[k]); }
         }
@@ -33,7 +33,7 @@ fn closed_back(texel: vec2i, front: f32, back: f32) -> f32 {
     return deepest;
 }
 
-// Whether the mesh ends or steps in depth at this texel or beside it: what a ray meets here depends on where in the texel it goes.
+// Whether the mesh ends or steps in depth at this texel or a neighbour: the hit then depends on where in the texel the ray passes.
 fn is_edge(texel: vec2i, front: f32) -> bool {
     let reach = CONNECTED_STEP / length(level_map_view.u_row.xyz);
     for (var i = 0; i < 9; i++) {
@@ -47,8 +47,8 @@ fn is_edge(texel: vec2i, front: f32) -> bool {
     return false;
 }
 
-// The word of a back depth with the edge's mark in its last bit; depths without the mark are rounded down the light, so that a
-// sheet does not get behind itself.
+// The word of a back depth with the edge mark in its last bit. Depths without the mark are rounded away from the light, so that the back of
+// a sheet does not get in front of it.
 fn marked(back: f32, edge: bool) -> u32 {
     let word = bitcast<u32>(back);
     if edge { return word | EDGE_MARK; }
@@ -85,7 +85,7 @@ fn pyramid_halve(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= side || id.y >= side { return; }
     var front = EMPTY_DEPTH;
     var back = -EMPTY_DEPTH;
-    // The first halving takes in one texel around the four: a mesh reaches beyond the texels whose middle it covers.
+    // The first halving includes one texel around the four, because a mesh extends beyond the texels whose centres it covers.
     let rim = select(0, 1, level_map_view.level == 1u);
     let across = 2 + 2 * rim;
     for (var i = 0; i < across * across; i++) {

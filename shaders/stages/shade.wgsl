@@ -1,4 +1,5 @@
-// Shade — radiance at the camera: diffuse surfaces through their media, and the sky at the water. One invocation per pixel.
+// Shade — radiance at the camera: diffuse surfaces seen through their media, and the sky reflected or refracted at the water. One
+// invocation per pixel.
 #import "lib/attenuation.wgsl"
 #import "shared/view.wgsl"
 
@@ -7,7 +8,7 @@
 @group(0) @binding(20) var<storage, read> point_irradiance: array<vec4f>;
 @group(0) @binding(22) var<storage, read_write> radiance: array<vec4f>; // sums over samples: W/(m² sr), notes
 
-// Whether any light is lost on its way; without it no exponential is computed.
+// Whether the water absorbs or scatters any light; if false no exponential is computed.
 override ATTENUATES: bool = true;
 
 fn left_after(c_per_m: f32, length_m: f32) -> f32 {

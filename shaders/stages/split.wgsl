@@ -1,6 +1,6 @@
-// Split — one halving of the beams whose corners end on different receivers: three more rays make four parts of each; parts that
-// end on one receiver are laid there, parts that still straddle are queued for the next halving, and after the last one torn.
-// One invocation per queued beam or part.
+// Split — one halving of the beams whose corners end on different receivers: three more rays, at the middles of the sides, make four parts
+// of each. Parts that end on one receiver are deposited there. Parts that still straddle are queued for the next halving; after the last
+// halving they are unresolved pieces, whose flux is shared by the receivers of their corners. One invocation per queued beam or part.
 #import "lib/turns.wgsl"
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
@@ -31,11 +31,11 @@
 #import "shared/queue.wgsl"
 
 struct Split {
-    level: u32,        // halvings that the parts made here have behind them; 0: beams are taken as they are
-    source: u32,       // first word of what is to be halved
-    destination: u32,  // first word of what is left for the next level
-    capacity: u32,     // parts that fit there
-    wide: u32,         // first word of the footprints that get workgroups of their own
+    level: u32,        // number of halvings of the parts made here; 0: beams are not halved
+    source: u32,       // first word of the queued beams or parts
+    destination: u32,  // first word of the parts queued for the next level
+    capacity: u32,     // number of parts that fit there
+    wide: u32,         // first word of the queued wide footprints
     wide_capacity: u32,
     pad_0: u32,
     pad_1: u32,
@@ -44,10 +44,11 @@ struct Split {
 @group(0) @binding(6) var<storage, read_write> split_queue: array<atomic<u32>>;
 @group(0) @binding(7) var<uniform> split: Split;
 
-// Share of the depth between two points by which the depth half way may differ from the mean on a smooth piece; at a step: 0.5.
+// Largest deviation of the depth half way between two points from their mean, as a share of their difference in depth, that counts as
+// smooth; at a step it is 0.5.
 const SMOOTH_SHARE: f32 = 0.25;
 
-// A ray's start and end.
+// Start and hit of a ray.
 struct Corner {
     origin: vec3f,
     direction: vec3f,
@@ -67,8 +68,8 @@ fn corner_at(cells: vec2f) -> Corner {
     return c;
 }
 
-// Corners, in cells, of a part of a beam: each halving takes the part at one of the corners (0 … 2) or the middle one (3), a bit
-// pair each, the first halving's highest. Fractions are dyadic, so that neighbours get the same corners to the bit.
+// Corners, in cells, of a part of a beam. `path` has two bits per halving, the first halving's highest: the part at one of the corners
+// (0 … 2) or the middle part (3). Fractions are dyadic, so that neighbours get identical corners to the bit.
 fn part_corners(beam_index: u32, path: u32, level: u32) -> mat3x2f {
     let cell_index = beam_index >> 1u;
     let cell = vec2u(cell_index % light.cells, cell_index / light.cells);
@@ -90,7 +91,7 @@ fn part_corners(beam_index: u32, path: u32, level: u32) -> mat3x2f {
     return c;
 }
 
-// Which of the six points (three corners, then the middles of the sides opposite to them) is corner `j` of part `k`.
+// Index of corner `j` of part `k` among the six points: three corners, then the middles of the sides opposite to them.
 fn point_of(k: u32, j: u32) -> u32 {
     if split.level == 0u { return j; }
     if k == 3u { return 3u + j; }
@@ -114,21 +115,21 @@ fn part_of(points: ptr<function, array<Corner, 6>>, k: u32) -> Beam {
     return b;
 }
 
-// Where the light of a part goes: to the receiver of corner `k`. Where its corners end on different receivers, each carries a third of
-// the flux to its own, over the footprint that the whole part has at that depth.
+// The receiver and footprint of a part's light. A resolved part has one. In an unresolved piece each corner carries a third of the flux to
+// its own receiver, over the footprint that the whole part has at that depth.
 struct Piece {
-    receiver: i32,  // NO_RECEIVER: it meets none
+    receiver: i32,  // NO_RECEIVER: it hits none
     uv: mat3x2f,
     lengths_m: vec3f,
 }
 
-fn piece_of(b: Beam, k: i32, is_torn: bool) -> Piece {
+fn piece_of(b: Beam, k: i32, is_unresolved: bool) -> Piece {
     var piece = Piece(b.receiver[k], b.uv, b.t);
-    if b.receiver[k] == NO_RECEIVER || (!is_torn && ends_nowhere(b)) {
+    if b.receiver[k] == NO_RECEIVER || (!is_unresolved && hits_nothing(b)) {
         piece.receiver = NO_RECEIVER;
         return piece;
     }
-    if !is_torn { return piece; }
+    if !is_unresolved { return piece; }
     piece.lengths_m = vec3f(b.t[k]);
     let r = receivers[b.receiver[k]];
     for (var corner = 0; corner < 3; corner++) {
@@ -142,13 +143,13 @@ fn piece_of(b: Beam, k: i32, is_torn: bool) -> Piece {
     return piece;
 }
 
-// A queued footprint: beam, and path with 2 bits per halving, then from bit 16 on the halvings (4 bits), whether it is torn (1), and
-// its corner (2).
-fn wide_word(path: u32, level: u32, is_torn: bool, k: i32) -> u32 {
-    return path | (level << 16u) | (u32(is_torn) << 20u) | (u32(k) << 21u);
+// The second word of a queued footprint: the path with 2 bits per halving, then from bit 16 on the number of halvings (4 bits), whether it
+// is unresolved (1 bit), and its corner (2 bits). The first word is the beam.
+fn wide_word(path: u32, level: u32, is_unresolved: bool, k: i32) -> u32 {
+    return path | (level << 16u) | (u32(is_unresolved) << 20u) | (u32(k) << 21u);
 }
 
-// Queues a footprint for workgroups of its own; false where there is no room left.
+// Queues a wide footprint; false if there is no room left.
 fn push_wide(beam_index: u32, word: u32) -> bool {
     let slot = atomicAdd(&split_queue[SPLIT_WIDE_COUNT], 1u);
     if slot >= split.wide_capacity { return false; }
@@ -161,13 +162,13 @@ fn push_wide(beam_index: u32, word: u32) -> bool {
     return true;
 }
 
-// Lays a part of a beam that `path` and `level` lead to. There is one place that deposits, see `deposit_row`.
-fn deposit_part(b: Beam, is_torn: bool, beam_index: u32, path: u32, level: u32) -> Losses {
+// Deposits the part of a beam that `path` and `level` identify. There is only one call that deposits, see `deposit_row`.
+fn deposit_part(b: Beam, is_unresolved: bool, beam_index: u32, path: u32, level: u32) -> Losses {
     var losses = NO_LOSSES;
-    let pieces = select(1, 3, is_torn);
+    let pieces = select(1, 3, is_unresolved);
     let flux = b.transmitted / f32(pieces);
     for (var k = 0; k < pieces; k++) {
-        let piece = piece_of(b, k, is_torn);
+        let piece = piece_of(b, k, is_unresolved);
         if piece.receiver == NO_RECEIVER {
             losses.missed += flux;
             continue;
@@ -182,7 +183,7 @@ fn deposit_part(b: Beam, is_torn: bool, beam_index: u32, path: u32, level: u32) 
         }
         let box = texel_box(target_map, piece.uv[0], piece.uv[1], piece.uv[2]);
         let extent = vec2u(box.last - box.first + 1);
-        if extent.x * extent.y > light.wide_texels && push_wide(beam_index, wide_word(path, level, is_torn, k)) { continue; }
+        if extent.x * extent.y > light.wide_texels && push_wide(beam_index, wide_word(path, level, is_unresolved, k)) { continue; }
         losses.left += arriving * deposit_triangle(target_map, piece.uv[0], piece.uv[1], piece.uv[2], arriving);
     }
     return losses;
@@ -196,8 +197,8 @@ fn push_part(beam_index: u32, path: u32) {
     atomicMax(&split_queue[0], min(slot / SPLIT_GROUP + 1u, MOST_GROUPS));
 }
 
-// Whether all six points lie on one smooth piece of a mesh: half way along each side the depth is about half way too. What a step
-// crosses has its middle as deep as one end. A steep face is told from a step by this at the first halving, by its slope never.
+// Whether all six points lie on one smooth part of a mesh: then the depth at the middle of each side is about the mean of its ends. Across a
+// step the middle is as deep as one of the ends. This distinguishes a steep face from a step at the first halving; the slope cannot.
 fn is_smooth(points: ptr<function, array<Corner, 6>>) -> bool {
     let receiver = (*points)[0].hit.receiver;
     for (var i = 0u; i < 3u; i++) {
@@ -210,7 +211,7 @@ fn is_smooth(points: ptr<function, array<Corner, 6>>) -> bool {
     return receiver > FLOOR;
 }
 
-// Halves one beam or part. Losses are noted one by one: floats added up over several parts would depend on the queue's order.
+// Halves one beam or part. Losses are noted one by one: float sums over several parts would depend on the queue's order.
 fn halve(beam_index: u32, path: u32, is_last: bool) {
     let above = max(split.level, 1u) - 1u;
     let c = part_corners(beam_index, path, above);
@@ -233,8 +234,8 @@ fn halve(beam_index: u32, path: u32, is_last: bool) {
         note_term(TERM_REFLECTED, b.unit_flux - b.transmitted);
         if b.transmitted == 0.0 { continue; }
         if straddles {
-            add_energy(TERM_TORN, b.transmitted * light.energy_scale);
-            atomicAdd(&energy[2u * TERM_TORN_COUNT], 1u);
+            add_energy(TERM_UNRESOLVED, b.transmitted * light.energy_scale);
+            atomicAdd(&energy[2u * TERM_UNRESOLVED_COUNT], 1u);
             if split.level < light.split_levels { add_energy(TERM_CUT, b.transmitted * light.energy_scale); }
         }
         let own_path = select(4u * path + k, 0u, is_whole_beam);
@@ -245,11 +246,12 @@ fn halve(beam_index: u32, path: u32, is_last: bool) {
 @compute @workgroup_size(64)
 fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let above = max(split.level, 1u) - 1u;
-    // A part has 4^−level of a beam's flux, and a workgroup at most 256 of them (of the beams' own parts twice that).
+    // A part has 4^−level of a beam's flux, and a workgroup at most 256 of them (twice that for the parts of whole beams).
     finer = min(f32(1u << (2u * above)), light.energy_scale / light.triangle_scale);
-    straight = light.kind == POINT;
+    is_direct = light.kind == POINT;
     let count = atomicLoad(&split_queue[QUEUE_COUNT + above]);
-    // Whether the next level fits is decided by what is here, before anything is queued: the same beams are torn every time.
+    // Whether the next level fits is decided from this level's count before anything is queued, so that the same pieces stay unresolved in
+    // every run.
     let is_last = split.level >= light.split_levels || count > split.capacity / 4u;
     for (var item = group.x * SPLIT_GROUP + invocation; item < count; item += groups.x * SPLIT_GROUP) {
         if above == 0u {
@@ -263,8 +265,8 @@ fn split_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     flush_account(invocation);
 }
 
-// Some workgroups (along y) per wide footprint (along x), as in `deposit_wide`; run with `split.level` 0, so that a part is its own
-// three corners.
+// Several workgroups (along y) per wide footprint (along x), as in `deposit_wide`. Runs with `split.level` 0, so that part_of() takes the
+// three corners as they are.
 @compute @workgroup_size(64)
 fn split_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let count = min(atomicLoad(&split_queue[SPLIT_WIDE_COUNT]), split.wide_capacity);
@@ -276,10 +278,10 @@ fn split_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
         var points: array<Corner, 6>;
         for (var i = 0u; i < 3u; i++) { points[i] = corner_at(c[i]); }
         let b = part_of(&points, 0u);
-        let is_torn = ((word >> 20u) & 1u) == 1u;
-        let piece = piece_of(b, i32((word >> 21u) & 3u), is_torn);
+        let is_unresolved = ((word >> 20u) & 1u) == 1u;
+        let piece = piece_of(b, i32((word >> 21u) & 3u), is_unresolved);
         let target_map = target_of(receivers[piece.receiver]);
-        let arriving = b.transmitted / select(1.0, 3.0, is_torn) * mean_transmission(piece.lengths_m);
+        let arriving = b.transmitted / select(1.0, 3.0, is_unresolved) * mean_transmission(piece.lengths_m);
         var beside = 0.0;
         if is_segment(piece.uv[0], piece.uv[1], piece.uv[2]) {
             if lane == 0u { beside = deposit_segment(target_map, piece.uv[0], piece.uv[1], piece.uv[2], arriving); }

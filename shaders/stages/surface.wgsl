@@ -1,4 +1,4 @@
-// Surface — where is the water, and how does it tilt? One invocation per grid vertex.
+// Surface — height and slope of the water. One invocation per grid vertex.
 #import "lib/turns.wgsl"
 #import "shared/water_surface.wgsl"
 #import "shared/light.wgsl"

@@ -1,4 +1,4 @@
-// Texel points — where do the texels of the map that is asked for lie? One invocation per texel of a band.
+// Texel points — positions and normals of the texels of the requested map. One invocation per texel of a band.
 #import "shared/points.wgsl"
 #import "shared/receivers.wgsl"
 #import "shared/level_maps.wgsl"
@@ -7,7 +7,7 @@
 
 struct TexelPoints {
     receiver: u32,   // in `all_receivers`
-    object: u32,     // of that receiver; of the floor nothing
+    object: u32,     // of that receiver; unused for the floor
     is_object: u32,
     layer: u32,      // of the object's level map
     width: u32,
@@ -20,7 +20,7 @@ struct TexelPoints {
 @group(0) @binding(3) var<storage, read> all_receivers: array<Receiver>;
 @group(0) @binding(16) var<storage, read_write> points: array<Point>;
 
-// Local position of a place of map space: what to_map() takes it from.
+// Local position of a point in map space: the inverse of to_map().
 fn from_map(r: Receiver, m: vec3f) -> vec3f {
     let rhs = m - vec3f(r.u_row.w, r.v_row.w, r.s_row.w);
     let u = r.u_row.xyz;

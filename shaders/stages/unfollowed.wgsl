@@ -1,6 +1,6 @@
-// Unfollowed — how much light takes ways that are not followed? One invocation per water cell. Slopes that look away from the light
-// leave theirs to water that stands in their shadow and is lit all the same; rays through steep waves come out of the water and go in
-// again; troughs bare the floor. None of it changes a map: the account says how much light is concerned.
+// Unfollowed — flux on paths that are not simulated. One invocation per water cell. Slopes that face away from the light cast shadows on
+// water that is lit all the same; rays through steep waves leave the water and enter it again; troughs bare the floor. No map depends on
+// this pass: it only counts the flux for the energy account.
 #import "lib/turns.wgsl"
 #import "lib/refraction.wgsl"
 #import "lib/fresnel.wgsl"
@@ -20,17 +20,17 @@
 struct Unfollowed {
     max_height_m: f32,
     max_slope: f32,
-    least_step_m: f32, // a small part of the shortest wave; 0 where neither rays nor troughs are looked for
+    least_step_m: f32, // a small part of the shortest wave; 0 if neither rays nor troughs are searched for
     floor_y_m: f32,    // far below where there is no floor
 }
 
 @group(0) @binding(13) var<uniform> unfollowed: Unfollowed;
 
-// Steps are as long as the water's steepest slope allows, so that rays are soon below its deepest trough; one that is not by then runs
-// along the water, and counts.
+// Steps are as long as the water's steepest slope allows, so rays are soon below its deepest trough. A ray that is not below it after these
+// steps runs along the water, and counts as leaving it.
 const MOST_STEPS: u32 = 512u;
 
-// Whether a ray that went under water at `origin` comes out of it before `t_end`.
+// Whether a ray that entered the water at `origin` leaves it before `t_end`.
 fn meets_water_again(origin: vec3f, direction: vec3f, t_end: f32) -> bool {
     let rate = abs(direction.y) + unfollowed.max_slope * length(direction.xz);
     var t = unfollowed.least_step_m;
@@ -56,18 +56,18 @@ fn unfollowed_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocatio
     var t_end = 0.0;
     for (var half = 0u; half < 2u; half++) {
         let b = grid_beam(cell, half);
-        note_unfollowed(TERM_TURNED, -signed_unit_flux(b.origin, b.direction));
+        note_unfollowed(TERM_FACING_AWAY, -signed_unit_flux(b.origin, b.direction));
         transmitted += b.transmitted;
         t_end = max(t_end, max(b.t.x, max(b.t.y, b.t.z)));
     }
     if transmitted == 0.0 || unfollowed.least_step_m == 0.0 { return; }
-    // The cell's middle stands for all of it.
+    // The cell's centre represents the whole cell.
     let place = vec2f(cell) + 0.5;
     let entry = entry_at(place, water_surface_at(vertex_m(place), light.wave_count));
     if entry.transmittance == 0.0 { return; }
     if entry.origin.y < unfollowed.floor_y_m {
-        note_unfollowed(TERM_BARED, transmitted);
+        note_unfollowed(TERM_BARED_FLOOR, transmitted);
     } else if meets_water_again(entry.origin, entry.direction, t_end) {
-        note_unfollowed(TERM_AGAIN, transmitted);
+        note_unfollowed(TERM_LEAVING_AGAIN, transmitted);
     }
 }

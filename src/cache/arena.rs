@@ -1,6 +1,6 @@
 //! Ranges of one buffer, handed out first-fit.
 
-/// What is asked for cannot fit.
+/// The requested maps cannot fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "level maps of {needed_bytes} bytes are needed at once, the budget is {budget_bytes} bytes"
@@ -40,7 +40,7 @@ impl Arena {
         Some(offset)
     }
 
-    /// Gives a range back; it joins its free neighbours.
+    /// Frees a range and merges it with its free neighbours.
     pub fn free(&mut self, offset: u64, bytes: u64) {
         let index = self.free.partition_point(|&(start, _)| start < offset);
         self.free.insert(index, (offset, bytes));
@@ -59,7 +59,7 @@ impl Arena {
         self.free = vec![(0, self.size)];
     }
 
-    /// Bytes that are free, in how many pieces.
+    /// Number of free bytes, and number of free ranges.
     pub fn free_bytes(&self) -> (u64, usize) {
         (
             self.free.iter().map(|&(_, length)| length).sum(),

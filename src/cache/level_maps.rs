@@ -1,9 +1,9 @@
 //! The level-map cache: one arena on the GPU, keyed by mesh, light direction in mesh space, resolution and layers.
 //!
-//! A level map does not depend on the waves, so one serves every frame of an animation. The arena is one buffer (shaders bind
-//! it whole) with ranges handed out first-fit; when there is no room, the maps that were used longest ago go first, never
-//! those that the frame at hand needs. A map counts as there once it is built, not when its range is reserved: a frame that breaks
-//! off leaves nothing that a later one could take for a map.
+//! A level map does not depend on the waves, so one serves every frame of an animation. The arena is one buffer (shaders bind it whole)
+//! with ranges allocated first-fit. When there is no room, the least recently used maps are evicted, but never those of the current frame.
+//! A map counts as cached once it is built, not when its range is reserved: a frame that is aborted leaves no range that a later frame
+//! could mistake for a map.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,7 +20,7 @@ struct Entry {
     built: bool,
 }
 
-/// Which map lies where in the arena.
+/// The level maps in the arena, and their places.
 #[derive(Debug)]
 pub struct LevelMapCache {
     arena: Arena,
@@ -44,18 +44,18 @@ impl LevelMapCache {
         }
     }
 
-    /// Whether a map is there, built.
+    /// Whether a map is cached and built.
     pub fn contains(&self, key: &LevelMapKey) -> bool {
         self.entries.get(key).is_some_and(|entry| entry.built)
     }
 
-    /// Byte offset in the arena of a map that is there or reserved.
+    /// Byte offset in the arena of a map that is built or reserved.
     pub fn offset(&self, key: &LevelMapKey) -> Option<u64> {
         self.entries.get(key).map(|e| e.offset)
     }
 
-    /// Makes room for all of `keys` at once and says which have to be built; counts hits and evictions. Each of those that have
-    /// to be is then told to [`Self::built`], or forgotten.
+    /// Reserves ranges for all of `keys` at once and returns those that must be built; counts hits and evictions. The caller then reports
+    /// each finished map with [`Self::built`] and drops the others with [`Self::forget_unbuilt`].
     ///
     /// # Errors
     /// When they do not fit the budget together; nothing is changed then.
@@ -81,7 +81,7 @@ impl LevelMapCache {
             }
         }
         if !self.place_all(&missing) {
-            // All fit, but not around the pieces that are there already: those are built again, side by side with the rest.
+            // They would all fit, but not around the maps that are in place: the arena is emptied and all of them are built again.
             self.totals.evictions += self.entries.values().filter(|e| e.built).count() as u64;
             self.clear();
             missing = keys.iter().map(|key| (*key).clone()).collect();
@@ -93,12 +93,12 @@ impl LevelMapCache {
         Ok(missing)
     }
 
-    /// Gives each key a range, and says whether all have one.
+    /// Allocates a range for each key; false if one does not fit.
     fn place_all(&mut self, keys: &[LevelMapKey]) -> bool {
         keys.iter().all(|key| self.place(key))
     }
 
-    /// Gives a key a range, if need be of maps that the frame at hand does not use.
+    /// Allocates a range for a key; evicts maps that the current frame does not use if necessary.
     fn place(&mut self, key: &LevelMapKey) -> bool {
         let bytes = key.bytes();
         let offset = loop {
@@ -147,7 +147,7 @@ impl LevelMapCache {
         }
     }
 
-    /// Forgets maps that were reserved and not built, so that a frame that broke off leaves no empty map behind.
+    /// Drops maps that were reserved and not built, so that an aborted frame leaves no empty map behind.
     pub fn forget_unbuilt(&mut self) {
         self.forget(|_, entry| !entry.built);
     }

@@ -1,5 +1,5 @@
-//! Level maps between frames: ranges of one buffer (`arena`), which map lies where and which goes first (`level_maps`), and building maps
-//! before a frame asks for them (`warm`).
+//! The level-map cache: ranges of one buffer (`arena`), the place of each map and the order of eviction (`level_maps`), and requests to
+//! build maps before a frame needs them (`warm`).
 
 pub mod arena;
 pub mod level_maps;

@@ -1,4 +1,4 @@
-//! Level maps that are built before a frame asks for them.
+//! Requests to build level maps before a frame needs them.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub struct WarmSun {
     pub azimuth_deg: f64,
 }
 
-/// Which level maps of a mesh to build: those that an unrotated, uniformly scaled instance needs under these suns.
+/// A request for the level maps of a mesh that an unrotated, uniformly scaled instance needs under these suns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WarmUp {
     /// The suns; not empty.
@@ -49,10 +49,10 @@ pub struct WarmedMap {
 }
 
 impl WarmUp {
-    /// A scene whose frames need just these level maps: the mesh in flat water, with the light on it wanted.
+    /// A scene that needs exactly these level maps: an irradiance map of the mesh in flat water.
     ///
     /// # Errors
-    /// When a figure is out of its range.
+    /// When a value is out of its range.
     pub fn scene_of(&self, mesh: &Arc<Mesh>) -> Result<ResolvedScene, SceneError> {
         let suns: Vec<Value> = self
             .suns
@@ -66,7 +66,7 @@ impl WarmUp {
                 })
             })
             .collect();
-        // Under the surface; how far does not matter to light from infinity.
+        // The mesh must be under the surface; its depth does not matter for light from infinity.
         let middle = mesh.origin_m;
         let depth_m = 1.0 + f64::from(mesh.max_m.y);
         let scene = Scene::from_value(json!({

@@ -1,12 +1,12 @@
-//! Level of detail: how large an object looks on the picture, and how many texels its maps get for that.
+//! Level of detail: the size of an object in the picture, and the number of texels that its maps get for it.
 
 use glam::DVec3;
 
 use super::{CameraFacts, SceneFacts};
 use crate::scene::ranges::{Integer, LevelMapTexels};
 
-/// The share of the way from an object's depth that waves may move its image sideways, per unit of their steepest slope: a surface
-/// tilted by α turns a refracted ray by less than α, and the ray goes down at a slant.
+/// Largest sideways displacement of an object's image by waves, per depth and per unit of their steepest slope: a surface tilted by α turns
+/// a refracted ray by less than α, and the ray goes down at a slant.
 const SWAY: f64 = 2.0;
 
 impl SceneFacts {
@@ -16,8 +16,8 @@ impl SceneFacts {
             / f64::from(self.quality.level_map_texels)
     }
 
-    /// Reference planes of an object, 2 … all of the method: as many fewer as its maps are smaller, so that a plane stays as far from
-    /// the next as texels do (Tipprasert 2006, §6.1). 0 where the method has none.
+    /// Number of reference planes of an object, from 2 to the method's number. It falls in proportion to the texels of its maps, so that the
+    /// distance between planes grows with the texel size (Tipprasert 2006, §6.1). 0 where the method has none.
     pub fn planes_of(&self, object: usize) -> u32 {
         if self.method.reference_planes == 0 {
             return 0;
@@ -26,7 +26,7 @@ impl SceneFacts {
         1 + (slices * self.detail_of(object)).round().max(1.0) as u32
     }
 
-    /// What a plan says about wet objects with smaller maps; empty where there are none.
+    /// Text of a plan about wet objects with smaller maps; empty where there are none.
     pub fn reduced_maps(&self) -> String {
         let reduced = self.wet_objects().filter(|&o| self.detail_of(o) < 1.0);
         match reduced.count() {
@@ -35,7 +35,7 @@ impl SceneFacts {
         }
     }
 
-    /// Gives each object maps for its size on the picture, where the scene asks for that.
+    /// Sizes each object's maps for its size in the picture, if the scene requests that.
     pub(super) fn size_maps(&mut self) {
         let per_pixel = self.quality.level_of_detail;
         let Some(camera) = self.output.camera.filter(|_| per_pixel > 0.0) else {
@@ -50,13 +50,13 @@ impl SceneFacts {
         }
     }
 
-    /// Longest diagonal of an object's bounds on the picture, pixels; 0 where it is certainly outside, infinite around the eye.
+    /// Longest diagonal of an object's bounds in the picture, pixels; 0 if it is certainly outside, infinite if it is around the eye.
     ///
-    /// Flat water in between brings an object nearer, by what it takes from the way below (d / n).
+    /// Flat water in between makes an object look nearer: a path length d under water looks like d / n.
     fn size_in_pixels(&self, object: usize, camera: &CameraFacts) -> f64 {
         let object = &self.receivers.objects[object];
         let highest_m = self.water.surface.max_height_m();
-        // From below, total reflection may show anything.
+        // From below the surface, total reflection may show any object.
         let in_air = camera.eye.y > highest_m;
         if in_air && self.is_outside(object.min, object.max, camera) {
             return 0.0;
@@ -67,26 +67,26 @@ impl SceneFacts {
             return diagonal_m * per_unit;
         }
         let nearest = camera.eye.clamp(object.min, object.max);
-        let way = nearest - camera.eye;
+        let from_eye = nearest - camera.eye;
         let below = if in_air && nearest.y < 0.0 {
             nearest.y / (nearest.y - camera.eye.y)
         } else {
             0.0
         };
-        let looks_m = way.length() * (1.0 - below + below / self.water.ior);
-        // Away from the picture's middle a plane image is stretched, at most by what it is in the corner.
+        let apparent_m = from_eye.length() * (1.0 - below + below / self.water.ior);
+        // Perspective stretches the image away from the picture's middle, at most as much as in its corners.
         let corner = (1.0 + camera.right.length_squared() + camera.up.length_squared()).sqrt();
-        let cosine = way
+        let cosine = from_eye
             .normalize_or_zero()
             .dot(camera.forward)
             .max(1.0 / corner);
-        diagonal_m * per_unit / (looks_m * cosine * cosine)
+        diagonal_m * per_unit / (apparent_m * cosine * cosine)
     }
 
-    /// Whether a box cannot be on the picture of a camera in the air: it lies, with all places where the water may show it, on the
-    /// outer side of one of the picture's edges.
+    /// Whether a box is certainly outside the picture of a camera in the air: the box and all places where refraction may show it lie beyond
+    /// one edge of the picture.
     fn is_outside(&self, min: DVec3, max: DVec3, camera: &CameraFacts) -> bool {
-        // Flat water shows a point between where it is and the water above it; waves move that to and fro.
+        // Flat water shows a point between its true place and the water above it; waves move this image to and fro.
         let sway_m = SWAY * self.water.surface.max_slope() * (-min.y).max(0.0);
         let top_m = max.y.max(self.water.surface.max_height_m());
         let low = DVec3::new(min.x - sway_m, min.y, min.z - sway_m);

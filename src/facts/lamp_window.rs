@@ -1,4 +1,4 @@
-//! Which piece of the water, or which directions, of a point light reach the receivers.
+//! The window of a point light: the water, or for a light under water the directions, through which its light reaches the receivers.
 
 use glam::{DVec2, DVec3};
 
@@ -7,17 +7,17 @@ use super::window::{Lit, Rect};
 use crate::physics::octahedral::octahedral_place;
 use crate::physics::refraction;
 
-/// Cells per side of the grid that is looked at.
+/// Cells per side of the grid that is tested.
 const SIDE: usize = 16;
-/// Most times that the window is contracted.
+/// Largest number of contractions of the window.
 const ROUNDS: u32 = 6;
-/// Part of the old area above which another round is not worth it.
+/// Remaining share of the area above which another contraction is not worth its time.
 const WORTH: f64 = 0.8;
-/// Directions in which the steepest tilts are looked up.
+/// Number of azimuths at which the steepest slopes are evaluated.
 const RIM_DIRECTIONS: u32 = 32;
-/// Widening of a cell's drift for what lies between the tilts and corners looked at.
+/// Widening of a cell's drift for slopes and places between the tested ones.
 const MARGIN: f64 = 0.05;
-/// Metres sideways per metre down beyond which light is not followed.
+/// Drift beyond which rays are not traced, metres sideways per metre down.
 const FLATTEST: f64 = 1000.0;
 
 /// Bounds of the drift, metres sideways per metre down.
@@ -36,7 +36,7 @@ impl Drift {
     }
 }
 
-/// What the light at `position_m` meets at a place of the water: which ways its rays can go on.
+/// The possible refracted rays of the light at `position_m` at a place of the water.
 struct Refractor<'a> {
     facts: &'a SceneFacts,
     position_m: DVec3,
@@ -48,12 +48,12 @@ impl Refractor<'_> {
     fn drift_at(&self, place_m: DVec2) -> Option<Drift> {
         let mut bounds: Option<Drift> = None;
         for &level_m in &self.levels_m {
-            let way = DVec3::new(place_m.x, level_m, place_m.y) - self.position_m;
-            let direction = way.try_normalize().unwrap_or(-DVec3::Y);
+            let from_light = DVec3::new(place_m.x, level_m, place_m.y) - self.position_m;
+            let direction = from_light.try_normalize().unwrap_or(-DVec3::Y);
             for tilt in &self.tilts {
                 let normal = refraction::normal_from_slope(tilt.x, tilt.y);
                 if direction.dot(normal) >= 0.0 {
-                    continue; // looks away from the light: nothing comes through
+                    continue; // faces away from the light: nothing enters
                 }
                 let Some(ray) =
                     refraction::refract_direction(direction, normal, self.facts.water.ior)
@@ -74,8 +74,8 @@ impl Refractor<'_> {
 
 /// The rectangle of water through which the light at `position_m`, above the water, reaches `receivers`; `None` when none does.
 ///
-/// Starts from all that any refraction could reach, looks at a grid of cells, drops those whose light cannot land on a
-/// receiver, and does so again with what is left.
+/// Starts from everything that any refraction could reach, divides it into cells, drops rows and columns at its sides whose light cannot
+/// land on a receiver, and repeats this with the rest.
 pub(super) fn water_window(
     facts: &SceneFacts,
     position_m: DVec3,
@@ -114,11 +114,11 @@ pub(super) fn water_window(
             break;
         }
     }
-    // A margin against rounding at the rim, so that no texel at the edge misses a sliver.
+    // A margin for rounding at the rim, so that no texel at the edge loses light.
     Some(window.grown(1e-5 * window.size().max_element().max(1e-6)))
 }
 
-/// What is left of `window` when cells whose light lands on no receiver are dropped at its sides.
+/// The bounding rectangle of the cells of `window` whose light can land on a receiver.
 fn contracted(
     refractor: &Refractor<'_>,
     window: Rect,
@@ -169,7 +169,7 @@ fn contracted(
     kept
 }
 
-/// Even lines from `low` to `high`, and one through `foot`: between lines the drift rises or falls without a turn.
+/// Evenly spaced lines from `low` to `high`, and one through `foot`, so that the drift is monotonic between lines.
 fn lines(low: f64, high: f64, foot: f64) -> Vec<f64> {
     let mut all: Vec<f64> = (0..=SIDE)
         .map(|i| low + (high - low) * i as f64 / SIDE as f64)
@@ -181,8 +181,8 @@ fn lines(low: f64, high: f64, foot: f64) -> Vec<f64> {
     all
 }
 
-/// The octahedral places of the directions in which the light at `position_m`, under water, meets `receivers`; all of them when one
-/// reaches higher than the light.
+/// Bounds of the directions, in octahedral coordinates, in which the light at `position_m` under water reaches `receivers`; all
+/// directions if a receiver reaches higher than the light.
 pub(super) fn direction_window(position_m: DVec3, receivers: &[Lit]) -> Option<Rect> {
     let all = Rect {
         min: DVec2::NEG_ONE,
@@ -194,7 +194,8 @@ pub(super) fn direction_window(position_m: DVec3, receivers: &[Lit]) -> Option<R
         if high.y >= 0.0 {
             return Some(all);
         }
-        // Between the planes through the light each face is seen as on a flat side of the octahedron: corners are extremes.
+        // Split at the coordinate planes through the light, each part of a face maps to one flat side of the octahedron, so its corners
+        // are its extremes.
         let ends = |low: f64, high: f64| {
             [low, high]
                 .into_iter()

@@ -12,7 +12,7 @@ use crate::scene::{Issue, Light, Output, ResolvedScene, Scene, SceneError};
 use crate::stats::Warning;
 use crate::waves::Surface;
 
-/// Most suns and point lights that the camera's pass has room for.
+/// Largest number of suns and point lights in the air: the size of the camera pass's array.
 pub const MOST_LIGHTS: usize = 64;
 
 /// The lights.
@@ -20,14 +20,15 @@ pub const MOST_LIGHTS: usize = 64;
 pub struct LightsFacts {
     /// Suns and point lights that light a receiver under water.
     pub lit: Vec<LitLight>,
-    /// What the passes that follow light run over, light by light.
+    /// The beam sets that are traced, light by light.
     pub beam_sets: Vec<BeamSet>,
     /// All suns above the horizon and point lights above the water.
     pub in_air: Vec<AirLight>,
     /// The sky.
     pub sky: SkyFacts,
-    /// Radiance of a white dry surface, W/(m² sr): horizontal under suns and skies, and under each point light facing it in the
-    /// middle of what is looked at, at the height of the floor (or of the water where there is none), 0.1 m away at least.
+    /// Radiance of a white dry surface, W/(m² sr), the reference for exposure. The surface is horizontal for suns and skies. For a point
+    /// light it faces the light, in the middle of the output's region, at the height of the floor (of the water where there is no floor),
+    /// at least 0.1 m away.
     pub white_radiance: f64,
 }
 
@@ -40,38 +41,37 @@ pub struct LitLight {
     pub boxes: Vec<Option<LevelBox>>,
 }
 
-/// Light that is followed together: one direction sample of a light (a sun's disc may have several), in one band of wavelengths.
-/// Beam sets of a light share its level maps, and add into its irradiance maps.
+/// A beam set: the beams that are traced together, for one direction sample of a light (a sun's disc may have several) in one band of
+/// wavelengths. The beam sets of a light share its level maps and add into its irradiance maps.
 #[derive(Clone, Debug)]
 pub struct BeamSet {
-    /// The light that it is of: index into [`LightsFacts::lit`].
+    /// Its light: index into [`LightsFacts::lit`].
     pub light: usize,
     /// Index of that light in the scene's `lights`.
     pub light_index: u32,
     /// Where its light comes from.
     pub source: Source,
-    /// The water as its light meets it.
+    /// Optics of the water for its wavelengths.
     pub band: Band,
-    /// Its share of the light's power: of a sun the irradiance of a plane facing it, W/m²; of a point light its radiant intensity,
-    /// W/sr.
+    /// Its share of the light's power. For a sun the irradiance of a plane facing it, W/m²; for a point light its radiant intensity, W/sr.
     pub power: [f64; 3],
-    /// The piece of water whose light can reach the receivers, local (x, z); of a light under water its directions, as octahedral
-    /// places.
+    /// The rectangle of water whose light can reach the receivers, local (x, z). For a light under water its directions, as octahedral
+    /// coordinates.
     pub window: Rect,
-    /// How the grid of rays lies in the window.
+    /// The grid of rays in the window.
     pub grid: Grid,
-    /// The piece of water whose light can reach an object under water; `None` where there is none.
+    /// The rectangle of water whose light can reach an object under water; `None` where there is no such object.
     pub objects_window: Option<Rect>,
 }
 
 impl BeamSet {
-    /// Whether the light is under water, so that its rays pass no surface.
+    /// Whether the light is under water, so that its rays cross no surface.
     pub fn is_submerged(&self) -> bool {
         matches!(self.source, Source::Submerged { .. })
     }
 
-    /// Side of a square of water in which all of `cells` × `cells` cells are as large as the largest one is, m; 0 of a light under
-    /// water, whose rays pass no surface.
+    /// `cells` times the longest side of any cell of a grid of `cells` × `cells`, m. 0 for a light under water, whose rays cross no
+    /// surface.
     pub fn span_m(&self, cells: u32) -> f64 {
         match self.source {
             Source::Submerged { .. } => 0.0,
@@ -85,9 +85,9 @@ impl BeamSet {
 pub struct SkyFacts {
     /// Radiance, W/(m² sr).
     pub radiance: [f64; 3],
-    /// Share of its light that flat water lets through; 1 without a sky.
+    /// Transmittance of flat water for its light; 1 without a sky.
     pub transmittance: f64,
-    /// Mean path of its light per depth; 1 without a sky.
+    /// Mean path length of its light per depth; 1 without a sky.
     pub path_factor: f64,
 }
 
@@ -101,7 +101,7 @@ impl SkyFacts {
                 }
             }
         }
-        // Integrals that take as long as planning a small frame.
+        // These integrals take as long as planning a small frame.
         let (transmittance, path_factor) = if radiance == [0.0; 3] {
             (1.0, 1.0)
         } else {
@@ -124,8 +124,8 @@ impl SkyFacts {
 }
 
 impl LightsFacts {
-    /// The lights that shine in the air, and the sky; which of them light something under water is found when the receivers are
-    /// known ([`SceneFacts::find_lights`]).
+    /// The lights in the air, and the sky. Which lights reach a receiver under water is found later, when the receivers are known
+    /// ([`SceneFacts::find_lights`]).
     pub(super) fn of(
         scene: &Scene,
         origin_m: DVec3,
@@ -142,7 +142,7 @@ impl LightsFacts {
         })
     }
 
-    /// The level maps that a beam set's light sees of the objects, in their order.
+    /// Boxes of the objects' level maps for a beam set's light, in the order of the objects.
     pub fn boxes_of(&self, set: &BeamSet) -> &[Option<LevelBox>] {
         &self.lit[set.light].boxes
     }
@@ -154,7 +154,7 @@ impl LightsFacts {
 }
 
 impl SceneFacts {
-    /// Finds the lights whose light can reach a receiver, and the water it goes through.
+    /// Finds the lights that can reach a receiver, and the window of water they shine through.
     pub(super) fn find_lights(&mut self, resolved: &ResolvedScene) -> Result<(), SceneError> {
         if !self.has_receiver() {
             return Ok(());
@@ -196,7 +196,7 @@ impl SceneFacts {
         Ok(())
     }
 
-    /// What `source` sees of each wet object through flat water.
+    /// The box of each wet object's level map for light from `source` through flat water.
     fn level_boxes(&self, resolved: &ResolvedScene, source: &Source) -> Vec<Option<LevelBox>> {
         let layers = self.quality.layers;
         let objects = self.receivers.objects.iter().zip(&resolved.meshes);
@@ -210,7 +210,7 @@ impl SceneFacts {
             .collect()
     }
 
-    /// The light of the next lit light from `source`, in one band.
+    /// The beam set of the next lit light, from `source`, in one band.
     fn beam_set(
         &self,
         light_index: u32,
@@ -230,7 +230,7 @@ impl SceneFacts {
         let window = window.ok_or_else(|| SceneError {
             issues: vec![Issue::invalid(
                 format!("/lights/{light_index}"),
-                "no refracted light of it was found on its way to the receivers; what falls less than a metre in a kilometre under water is not followed",
+                "none of its refracted rays reach the receivers; rays that fall less than a metre per kilometre under water are not traced",
                 "a light whose rays fall more steeply under water",
             )],
         })?;

@@ -1,6 +1,6 @@
-//! What stages and warnings need to know of the method that carries the light. Methods themselves live above: each says this of itself.
+//! Properties of the method that the stages and warnings need. Methods live in a room above this one; each describes itself.
 
-/// What a method makes.
+/// The product of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Product {
     /// Flux sums per texel of the receivers' maps.
@@ -11,32 +11,32 @@ pub enum Product {
     Field,
 }
 
-/// A method, as the stages see it.
+/// The properties of a method that the stages use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodFacts {
     /// Its name.
     pub name: &'static str,
-    /// What it makes.
+    /// Its product.
     pub product: Product,
-    /// Whether what it lands is what the rays took away. Where it is not, accounts that are open are no defect, and the frame says by
-    /// how much.
+    /// Whether the landed flux equals the flux that the rays carry. If not, an energy account that does not close is no defect, and the
+    /// frame reports the difference.
     pub conserves_energy: bool,
-    /// Whether rays carry light to meshes where they hit them. Otherwise the method lays light on meshes itself, and rays only tell
-    /// what is left for the floor.
+    /// Whether meshes are lit where rays hit them. Otherwise the method places light on meshes itself, and the hits only decide which light
+    /// is left for the floor.
     pub lights_meshes_by_hits: bool,
-    /// Planes that cut the box of an object along the light, for methods that slice objects; else 0.
+    /// Number of planes that cut the box of an object along the light, for methods that slice objects; else 0.
     pub reference_planes: u32,
-    /// Whether those planes without a surface near them are left out.
+    /// Whether planes without a surface near them are skipped.
     pub skips_empty_planes: bool,
-    /// How often a beam may be laid on an object, at most: the account has room for as much.
+    /// Largest number of deposits of one beam on an object; the energy account is scaled for it.
     pub deposits_per_beam: u32,
     /// Whether the flux sums have room for one more map of the largest object.
     pub has_scratch_map: bool,
-    /// What it leaves out, as sentences with their codes: see [`super::warnings`].
+    /// Effects that it leaves out; [`super::warnings`] has the messages.
     pub leaves_out: LeavesOut,
 }
 
-/// What a method leaves out that others simulate.
+/// Effects that a method leaves out and others simulate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LeavesOut {
     /// Shadows of objects on other objects.

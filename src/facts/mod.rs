@@ -1,15 +1,16 @@
-//! What a scene boils down to: the figures that decide what has to be done, computed once, without a GPU.
+//! Facts of a scene: the values that decide which work a frame needs, computed once, without a GPU.
 //!
-//! Everything is in *local* coordinates: the origin lies on the water at rest, in the middle of what is looked at, so that
-//! f32 is as good far from the world's origin as near it.
+//! Everything is in *local* coordinates. The origin lies on the water at rest, in the middle of the output's region, so that f32 is as
+//! accurate far from the world's origin as near it.
 //!
-//! - [`water`]: surface and optics; [`lights`]: sources and the beam sets that are followed; [`receivers`]: floor and objects;
-//!   [`output`]: camera, layers, the receiver of a map;
-//! - `placement`: objects and the boxes of their level maps; `detail`: texels of those by their size in the picture; `source`: where
-//!   light comes from; `window`, `lamp_window`: through which water it reaches the receivers;
-//! - `warnings`: what is left out or sub-sampled; `unfollowed`, `stopped`: how much light that is;
-//! - `moment`: what of all this changes with time.
+//! - [`water`]: surface and optics; [`lights`]: sources and their beam sets; [`receivers`]: floor and objects; [`output`]: camera, layers,
+//!   the receiver of a map;
+//! - `placement`: objects and the boxes of their level maps; `detail`: texels of those maps, by the object's size in the picture;
+//!   `source`: where light comes from; `window`, `lamp_window`: the water through which light reaches the receivers;
+//! - `warnings`: what is left out or sub-sampled; `unfollowed`, `blocked`: how much light that concerns;
+//! - `moment`: which facts change with time.
 
+mod blocked;
 mod detail;
 mod lamp_window;
 pub mod lights;
@@ -19,7 +20,6 @@ pub mod output;
 pub mod placement;
 pub mod receivers;
 pub mod source;
-mod stopped;
 pub mod unfollowed;
 pub mod warnings;
 pub mod water;
@@ -35,7 +35,7 @@ pub use self::water::{Band, WaterFacts};
 use crate::scene::{Output, Quality, Receiver, ResolvedScene, SceneError};
 use crate::stats::Warning;
 
-/// The figures of a scene.
+/// The facts of a scene.
 #[derive(Clone, Debug)]
 pub struct SceneFacts {
     /// World position of the local origin, m.
@@ -46,21 +46,21 @@ pub struct SceneFacts {
     pub lights: LightsFacts,
     /// What receives light.
     pub receivers: ReceiverFacts,
-    /// What is asked for.
+    /// The requested output.
     pub output: OutputFacts,
-    /// What the stages need to know of the method.
+    /// Properties of the method that the stages need.
     pub method: MethodFacts,
-    /// The dials, without what the output has no use for.
+    /// The dials, reduced to what the output uses.
     pub quality: Quality,
-    /// What is not simulated.
+    /// Warnings about what is not simulated.
     pub warnings: Vec<Warning>,
 }
 
 impl SceneFacts {
-    /// The facts of a validated scene that `method` carries the light of; of its warnings only those about lights that are left out.
+    /// The facts of a validated scene that is rendered with `method`. Its only warnings are those about lights that are left out.
     ///
     /// # Errors
-    /// Too many lights in the air, and lights whose refracted light is too flat to follow.
+    /// Too many lights in the air, and lights whose refracted rays are too flat to trace.
     pub fn of(resolved: &ResolvedScene, method: MethodFacts) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let origin_m = origin(resolved);
@@ -68,7 +68,7 @@ impl SceneFacts {
         let mut quality = scene.quality.clone();
         let output = OutputFacts::of(scene, origin_m);
         if output.is_floor_map() {
-            // Nobody looks at the objects' maps.
+            // The objects' maps are unused.
             quality.layers = 1;
         }
         let mut facts = Self {
@@ -102,7 +102,7 @@ impl SceneFacts {
         Ok(facts)
     }
 
-    /// 1 when all colour channels of all beam sets fade alike on their way, else 3.
+    /// Number of colour channels to trace: 1 if all channels of all beam sets have the same extinction, else 3.
     pub fn channels(&self) -> u32 {
         let sets = self.lights.beam_sets.iter();
         sets.map(|set| set.band.channels())
@@ -110,13 +110,13 @@ impl SceneFacts {
             .unwrap_or_else(|| self.water.band().channels())
     }
 
-    /// Whether any light is lost on its way through the water.
+    /// Whether the water absorbs or scatters any light.
     pub fn attenuates(&self) -> bool {
         self.water.attenuates()
     }
 }
 
-/// The local origin: the middle of what is lit, on the water at rest.
+/// The local origin: the middle of the output's region, on the water at rest.
 fn origin(resolved: &ResolvedScene) -> DVec3 {
     let scene = &resolved.scene;
     let xz = match (&scene.output, &scene.floor) {

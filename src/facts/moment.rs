@@ -1,5 +1,5 @@
-//! The facts of a scene at another moment. Only the surface moves, and nothing but its bounds is in the other facts: except for point
-//! lights, which are over or under the water of their place.
+//! The facts of a scene at another time. Only the surface moves, and the other facts depend on its bounds only. Point lights are the
+//! exception: each is above or under the water at its place.
 
 use super::SceneFacts;
 use super::source::Source;
@@ -7,16 +7,16 @@ use super::water::surface_around;
 use crate::scene::ResolvedScene;
 
 impl SceneFacts {
-    /// The facts and warnings of `resolved`, which differs from the scene of these facts in `time_s` only. `None` where more than the
-    /// surface changes, so that they have to be found anew.
+    /// The facts and warnings of `resolved`, which differs from the scene of these facts only in `time_s`. `None` if more than the surface
+    /// changes and the facts must be computed again.
     pub fn at_time_of(&self, resolved: &ResolvedScene) -> Option<Self> {
         let scene = &resolved.scene;
         let surface = surface_around(scene, self.origin_m);
-        // Windows, dry objects, level maps and warnings are made from these bounds.
+        // Windows, dry objects, level maps and warnings depend on these bounds.
         if surface.bounds_change_with_time() {
             return None;
         }
-        // A light that the water rises over shines into it in another way, through other beam sets.
+        // If the water rises over a light or falls below it, the light's beam sets change.
         let moved = scene.lights.iter().any(|light| {
             let source = |surface| Source::of(light, self.origin_m, surface);
             source(&surface) != source(&self.water.surface)

@@ -1,4 +1,4 @@
-//! What a scene asks for: a camera's view, or the irradiance of a receiver.
+//! The requested output: a camera's view, or the irradiance of a receiver.
 
 use glam::{DVec2, DVec3};
 
@@ -9,21 +9,21 @@ use crate::physics::sky;
 use crate::scene::ranges::DEFAULT_MAP_SIDE;
 use crate::scene::{Camera, LayerName, Output, Receiver, Scene};
 
-/// What the scene's output is.
+/// The output of a scene.
 #[derive(Clone, Debug)]
 pub struct OutputFacts {
     /// The camera of a view.
     pub camera: Option<CameraFacts>,
-    /// Layers of a view; of an irradiance map only [`LayerName::Irradiance`].
+    /// Layers of a view; for an irradiance map only [`LayerName::Irradiance`].
     pub layers: Vec<LayerName>,
     /// The receiver of an irradiance map.
     pub receiver: Option<Receiver>,
-    /// The layer of that receiver, 0 the nearest along the light; of a view and on the floor 0.
+    /// The layer of that receiver: 0 is the nearest along the light. 0 for a view and for the floor.
     pub receiver_layer: u32,
-    /// Sky irradiance to be added to an irradiance map on the floor, W/m².
+    /// Sky irradiance that is added to an irradiance map of the floor, W/m².
     pub sky_w_m2: [f64; 3],
-    /// Layers of objects that the scene asks for; `quality.layers` of the facts is 1 where the output has no use for more.
-    pub asked_layers: u32,
+    /// Layers of objects that the scene requests; `quality.layers` of the facts is 1 where the output uses no more.
+    pub requested_layers: u32,
 }
 
 /// The camera.
@@ -33,9 +33,9 @@ pub struct CameraFacts {
     pub eye: DVec3,
     /// Unit viewing direction.
     pub forward: DVec3,
-    /// To the right edge of the picture, at unit distance (orthographic: m).
+    /// From the middle of the picture to its right edge, at unit distance (orthographic: m).
     pub right: DVec3,
-    /// To the upper edge of the picture.
+    /// From the middle of the picture to its upper edge, likewise.
     pub up: DVec3,
     /// Parallel rays.
     pub orthographic: bool,
@@ -68,16 +68,16 @@ impl OutputFacts {
             receiver: map.map(|map| map.receiver),
             receiver_layer: map.map_or(0, |map| map.layer),
             sky_w_m2: [0.0; 3],
-            asked_layers: scene.quality.layers,
+            requested_layers: scene.quality.layers,
         }
     }
 
-    /// Whether a view of this layer is asked for.
+    /// Whether a view with this layer is requested.
     pub fn wants(&self, layer: LayerName) -> bool {
         self.camera.is_some() && self.layers.contains(&layer)
     }
 
-    /// Whether the irradiance seen by the camera is needed.
+    /// Whether the camera's view needs irradiance.
     pub fn wants_irradiance(&self) -> bool {
         self.wants(LayerName::Radiance) || self.wants(LayerName::Irradiance)
     }
@@ -89,7 +89,7 @@ impl OutputFacts {
 }
 
 impl SceneFacts {
-    /// Sizes the floor's map for the output, and finds the light of the skies on it.
+    /// Sizes the floor's map for the output, and computes the skies' irradiance on it.
     pub(super) fn size_floor_map(&mut self, output: &Output) {
         match output {
             Output::View(_) => {

@@ -18,7 +18,7 @@ pub struct ObjectFacts {
     pub albedo: Option<[f64; 3]>,
     /// Id of the mesh.
     pub mesh: String,
-    /// Whether light under water can strike it.
+    /// Whether light under water can hit it.
     pub wet: bool,
     /// Texels along each side of its level maps and irradiance maps.
     pub map_texels: u32,
@@ -27,7 +27,7 @@ pub struct ObjectFacts {
 }
 
 impl ObjectFacts {
-    /// Middle of what of the bounds lies under the water at rest; of their lower side where nothing does.
+    /// Centre of the part of its bounds under the water at rest; of their lower side where no part is under water.
     pub fn wet_middle(&self) -> DVec3 {
         let top_m = self.max.y.min(0.0).max(self.min.y);
         let mut middle = (self.min + self.max) * 0.5;
@@ -36,7 +36,7 @@ impl ObjectFacts {
     }
 }
 
-/// How an object's bounding box looks along an axis.
+/// Projection of an object's bounding box along an axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Across {
     /// Its least width, m.
@@ -48,7 +48,7 @@ pub(super) struct Across {
 }
 
 impl ObjectFacts {
-    /// How the box around its mesh, turned with the object, looks along the unit vector `axis`.
+    /// Projection of the mesh's bounding box, rotated with the object, along the unit vector `axis`.
     pub(super) fn across(&self, mesh: &Mesh, axis: DVec3) -> Across {
         let size = (mesh.max_m - mesh.min_m).as_dvec3();
         let matrix = self.local_from_mesh.matrix3;
@@ -58,13 +58,13 @@ impl ObjectFacts {
             matrix.z_axis * size.z,
         ];
         let (u, v) = axis.any_orthonormal_pair();
-        let width_along = |way: DVec3| edges.iter().map(|edge| edge.dot(way).abs()).sum::<f64>();
-        // A sum of |cosines| is least across one of the edges' pictures.
+        let width_along = |axis: DVec3| edges.iter().map(|edge| edge.dot(axis).abs()).sum::<f64>();
+        // The width, a sum of |cosines|, is least perpendicular to the projection of one of the edges.
         let width_m = edges
             .iter()
             .map(|edge| DVec2::new(edge.dot(u), edge.dot(v)))
-            .filter_map(|picture| picture.perp().try_normalize())
-            .map(|way| width_along(u * way.x + v * way.y))
+            .filter_map(|projection| projection.perp().try_normalize())
+            .map(|across| width_along(u * across.x + v * across.y))
             .fold(f64::INFINITY, f64::min);
         let [a, b, c] = edges;
         let faces = [a.cross(b), b.cross(c), c.cross(a)];
@@ -128,7 +128,7 @@ fn bounds(local_from_mesh: &DAffine3, mesh: &Mesh) -> (DVec3, DVec3) {
     (min, max)
 }
 
-/// What a level map depends on: the mesh and the light's direction in the mesh's own space, not the waves.
+/// Cache key of a level map. A level map depends on the mesh and the light's direction in mesh space, but not on the waves.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LevelMapKey {
     /// Id of the mesh.
@@ -174,29 +174,29 @@ impl LevelMapKey {
 /// The box of a level map, aligned to the light in mesh space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LevelBox {
-    /// What the map depends on.
+    /// Cache key of the map.
     pub key: LevelMapKey,
-    /// Rows that take mesh coordinates to (u, v) in texels and s in mesh units along the light.
+    /// Rows that map mesh coordinates to (u, v) in texels and s in mesh units along the light.
     pub map_from_mesh: [DVec4; 3],
     /// Range of s.
     pub s_range: [f64; 2],
-    /// Rows that take local coordinates to (u, v, s).
+    /// Rows that map local coordinates to (u, v, s).
     pub map_from_local: [DVec4; 3],
     /// Unit direction of the axis in local space.
     pub axis: DVec3,
-    /// 1 / (area that a texel shows to the axis, m²).
+    /// 1 / (area of a texel projected along the axis, m²).
     pub density_per_flux: f64,
     /// Units of s per metre along the axis.
     pub s_per_m: f64,
 }
 
 impl LevelBox {
-    /// The box of `mesh`, placed as `object`, for light that goes along local unit direction `flat`.
+    /// The box of `mesh`, placed as `object`, for light along the local unit direction `flat` (under flat water).
     pub fn new(object: &ObjectFacts, mesh: &Mesh, flat: DVec3, layers: u32) -> Self {
         let texels = object.map_texels;
         let mesh_from_local = object.local_from_mesh.inverse();
         let in_mesh = (mesh_from_local.matrix3 * flat).normalize();
-        // Rounded, so that equal directions give equal keys and a rebuilt map is the same to the bit.
+        // Rounded, so that equal directions give equal keys and a rebuilt map is identical to the bit.
         let steps = f64::from(1_u32 << 20);
         let direction = in_mesh.to_array().map(|c| (c * steps).round() as i32);
         let along = (DVec3::from_array(direction.map(f64::from)) / steps).normalize();

@@ -1,4 +1,4 @@
-//! What receives light: the floor, and objects.
+//! The receivers of light: the floor, and objects.
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +12,7 @@ use crate::scene::{Receiver, ResolvedScene};
 pub struct ReceiverFacts {
     /// The floor.
     pub floor: Option<FloorFacts>,
-    /// Where the floor's irradiance is wanted.
+    /// The floor's irradiance map, if the output needs one.
     pub floor_map: Option<FloorMap>,
     /// The objects.
     pub objects: Vec<ObjectFacts>,
@@ -34,7 +34,7 @@ pub struct FloorFacts {
 /// An irradiance map on the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloorMap {
-    /// What it covers.
+    /// The rectangle it covers.
     pub rect: Rect,
     /// Texels along x.
     pub width: u32,
@@ -43,7 +43,7 @@ pub struct FloorMap {
 }
 
 impl ReceiverFacts {
-    /// The receivers around the local origin `origin_m`, under waves of at most `max_height_m`; the floor's map is sized when the
+    /// The receivers around the local origin `origin_m`, under waves of at most `max_height_m`. The floor's map is sized later, when the
     /// output is known.
     pub(super) fn of(resolved: &ResolvedScene, origin_m: DVec3, max_height_m: f64) -> Self {
         let floor = resolved.scene.floor.as_ref().map(|f| {
@@ -66,7 +66,7 @@ impl ReceiverFacts {
         }
     }
 
-    /// Indices of objects that can be struck by light under water.
+    /// Indices of objects that light under water can hit.
     pub fn wet_objects(&self) -> impl Iterator<Item = usize> + '_ {
         self.objects
             .iter()
@@ -77,12 +77,12 @@ impl ReceiverFacts {
 }
 
 impl SceneFacts {
-    /// Indices of objects that can be struck by light under water.
+    /// Indices of objects that light under water can hit.
     pub fn wet_objects(&self) -> impl Iterator<Item = usize> + '_ {
         self.receivers.wet_objects()
     }
 
-    /// Whether anything under water waits for light.
+    /// Whether the output needs light on a receiver under water.
     pub fn has_receiver(&self) -> bool {
         match self.output.receiver {
             Some(Receiver::Floor(_)) => self.receivers.floor_map.is_some(),

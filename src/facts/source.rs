@@ -10,11 +10,11 @@ use crate::physics::refraction;
 use crate::scene::Light;
 use crate::waves::Surface;
 
-/// Largest cell of a point light's grid over its smallest, at most.
+/// Largest ratio of cell sizes in a point light's grid.
 const MOST_STRETCH: f64 = 9.0;
-/// Sides of the window beyond which a light is far aside.
+/// Distance beyond which a light counts as far aside, in sides of the window.
 const FAR_ASIDE: f64 = 4.0;
-/// Least depth and distance that a direction can be told from, m.
+/// Least depth and distance from which a direction is computed, m.
 const TINY_M: f64 = 1e-6;
 
 /// Where light comes from, local coordinates.
@@ -72,10 +72,10 @@ impl Source {
         }
     }
 
-    /// Unit direction under flat water of the ray that goes through `target_m`; `None` where none goes into the water.
+    /// Unit direction under flat water of the ray that goes through `target_m`; `None` where no light enters the water.
     ///
-    /// Of a point light above the water the ray is refracted on its way so that it really meets the target (thesis §4.2.1,
-    /// eq. 2-8); one under water shines straight.
+    /// For a point light above the water the entry point is solved so that the refracted ray hits the target (thesis §4.2.1, eq. 2-8). A
+    /// light under water shines straight.
     pub fn direction_at(&self, target_m: DVec3, ior: f64) -> Option<DVec3> {
         match *self {
             Self::Sun { to_light } => refraction::refract_direction(-to_light, DVec3::Y, ior),
@@ -95,9 +95,9 @@ impl Source {
         }
     }
 
-    /// How far above height `y_m` a point light under flat water seems to be, seen from right below: h + d/n; of one under water
-    /// how far it is.
-    pub fn seeming_height_m(&self, y_m: f64, ior: f64) -> f64 {
+    /// Apparent height of a point light above `y_m`, seen from straight below through flat water: h + d/n. For a light under water its
+    /// true height above `y_m`.
+    pub fn apparent_height_m(&self, y_m: f64, ior: f64) -> f64 {
         match *self {
             Self::Sun { .. } => f64::INFINITY,
             Self::Submerged { position_m } => position_m.y - y_m,
@@ -105,8 +105,8 @@ impl Source {
         }
     }
 
-    /// Most flux that goes to `area_m2` across its rays around a place under flat water, of a light of unit power: m² of a sun, sr of
-    /// a point light, near which an area takes half of all directions at most. What is absorbed is not taken off.
+    /// Upper bound of the flux of a light of unit power onto an area of `area_m2` across its rays around a place under flat water, without
+    /// absorption: m² for a sun, sr for a point light, at most half of all directions.
     pub(super) fn most_onto(&self, middle_m: DVec3, area_m2: f64, ior: f64) -> f64 {
         let within = |distance2_m2: f64| {
             if area_m2 > 0.0 {
@@ -119,14 +119,14 @@ impl Source {
             Self::Sun { to_light } => {
                 let enters = fresnel_transmittance(to_light.y, ior) * to_light.y;
                 self.direction_at(middle_m, ior)
-                    .map_or(0.0, |way| area_m2 * enters / -way.y)
+                    .map_or(0.0, |direction| area_m2 * enters / -direction.y)
             }
             Self::Point { position_m } => {
                 let sideways =
                     DVec2::new(middle_m.x - position_m.x, middle_m.z - position_m.z).length();
                 within(
                     sideways
-                        .hypot(self.seeming_height_m(middle_m.y, ior))
+                        .hypot(self.apparent_height_m(middle_m.y, ior))
                         .powi(2),
                 )
             }
@@ -134,7 +134,7 @@ impl Source {
         }
     }
 
-    /// Where a point light is; `None` of a sun.
+    /// Position of a point light; `None` for a sun.
     pub fn position_m(&self) -> Option<DVec3> {
         match *self {
             Self::Sun { .. } => None,
@@ -143,15 +143,15 @@ impl Source {
     }
 }
 
-/// How the grid's places lie on the water: x = foot + s (1 + β s²) along both axes, so that cells are small under a near light,
-/// where its rays spread most, and the same polynomial gives a vertex wherever it is needed.
+/// Mapping of the grid onto the water: x = foot + s (1 + β s²) along both axes. Cells are smaller under a near light, where its rays
+/// diverge most. Shaders evaluate the same polynomial for any vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// Range of s, m; of a light under water of the octahedral places.
+    /// Range of s, m; for a light under water the range of the octahedral coordinates.
     pub places: Rect,
-    /// The point under the light, local (x, z); (0, 0) of suns, lights far aside and lights under water.
+    /// The point under the light, local (x, z); (0, 0) for suns, lights far aside and lights under water.
     pub foot_m: DVec2,
-    /// β, 1/m²; 0: all cells are alike.
+    /// β, 1/m²; 0: all cells have the same size.
     pub bend_per_m2: f64,
 }
 
@@ -170,7 +170,7 @@ impl Grid {
         let (low, high) = (window.min - foot_m, window.max - foot_m);
         let reach_m = low.abs().max(high.abs()).max_element();
         if reach_m > FAR_ASIDE * window.size().max_element() {
-            // Its light changes little over the window, and f32 could not tell its places from so far.
+            // Its light changes little over the window, and f32 could not resolve coordinates relative to such a distant foot.
             return even;
         }
         let steep = reach_m / position_m.y.max(TINY_M * reach_m);
@@ -206,7 +206,7 @@ impl Grid {
         1.0 + 3.0 * self.bend_per_m2 * s * s
     }
 
-    /// Longest side of the largest of `cells` × `cells` cells, m.
+    /// Longest side of any cell of a grid of `cells` × `cells`, m.
     pub fn widest_cell_m(&self, cells: u32) -> f64 {
         let farthest = self.places.min.abs().max(self.places.max.abs());
         let step = self.places.size() / f64::from(cells);
@@ -214,8 +214,8 @@ impl Grid {
     }
 }
 
-/// Irradiance of a plane facing the light, W/m², at a height of the floor (or of the water at rest where there is none) in the middle
-/// of what is looked at: what exposure takes for a point light. Nearer than 0.1 m counts as 0.1 m.
+/// Irradiance of a plane facing a point light, W/m², in the middle of the output's region, at the height of the floor (of the water at
+/// rest where there is no floor). Exposure uses it. Distances below 0.1 m count as 0.1 m.
 pub(super) fn facing_w_m2(position_m: DVec3, floor_y_m: Option<f64>, intensity_w_sr: f64) -> f64 {
     const NEAREST_M: f64 = 0.1;
     let middle_m = DVec3::new(0.0, floor_y_m.unwrap_or(0.0), 0.0);

@@ -1,4 +1,4 @@
-//! Which ways of light that are not followed a scene could have: what the waves at their steepest and highest allow.
+//! Light paths that are possible in a scene but not simulated, judged by the steepest slopes and greatest heights of the waves.
 
 use glam::{DVec2, DVec3};
 
@@ -8,29 +8,30 @@ use crate::physics::refraction::{normal_from_slope, refract_direction};
 use crate::stats::Warning;
 use crate::waves::Surface;
 
-/// Directions in which the steepest slopes are looked at.
+/// Number of azimuths at which the steepest slopes are evaluated.
 const SLOPES: u32 = 64;
-/// Parts of the steepest slopes that are looked at too.
+/// Number of fractions of each steepest slope that are tested.
 const PARTS: u32 = 8;
-/// What is within so much of meeting the water again may do so: between the slopes that are looked at there are others.
+/// A ray counts as possibly leaving the water if it reaches this share of the needed slope, because other slopes lie between the tested
+/// ones.
 const NEARLY: f64 = 0.9;
 
-/// Code of the warning that some slopes look away from a light.
+/// Code of the warning that some slopes face away from a light.
 pub const WAVES_SHADE_WAVES: &str = "waves_shade_waves";
 
-/// The warning about a light from which some slopes look away; how much flux that is only the frame knows.
+/// The warning about a light from which some slopes face away; the frame adds the flux.
 pub fn waves_shade_waves(light: u32) -> Warning {
     Warning {
         pointer: Some(format!("/lights/{light}")),
         ..Warning::new(
             WAVES_SHADE_WAVES,
-            "some wave slopes look away from the light; the shadows of waves on waves are not simulated, so that water in them is lit",
+            "some wave slopes face away from the light; shadows of waves on waves are not simulated, so water in these shadows is lit",
         )
     }
 }
 
-/// Whether slopes of these waves can look away from a light.
-pub(super) fn looks_away(surface: &Surface, light: &BeamSet) -> bool {
+/// Whether slopes of these waves can face away from a light.
+pub(super) fn can_face_away(surface: &Surface, light: &BeamSet) -> bool {
     if surface.max_slope() == 0.0 {
         return false;
     }
@@ -51,13 +52,13 @@ pub(super) fn looks_away(surface: &Surface, light: &BeamSet) -> bool {
     }
 }
 
-/// Whether a ray that these waves refract can come out of the water again: it has to be flatter than the steepest slope that could
-/// fall away under it.
+/// Whether a ray that these waves refract can leave the water again: it must be flatter than the steepest slope that could fall away
+/// under it.
 fn may_leave_again(surface: &Surface, light: &BeamSet, ior: f64) -> bool {
     let rim = surface.rim_slopes(SLOPES);
     let to_lights = match light.source {
         Source::Sun { to_light } => vec![to_light],
-        // Between waves rays may come from anywhere, also from below.
+        // A light between waves may shine at the water from any side, also from below.
         Source::Point { position_m } if position_m.y <= surface.max_height_m() => {
             return surface.max_slope() > 0.0;
         }
@@ -83,34 +84,34 @@ fn may_leave_again(surface: &Surface, light: &BeamSet, ior: f64) -> bool {
             if normal.dot(to_light) <= 0.0 {
                 return false;
             }
-            let Some(way) = refract_direction(-to_light, normal, ior) else {
+            let Some(refracted) = refract_direction(-to_light, normal, ior) else {
                 return false;
             };
-            let aside = DVec2::new(way.x, way.z);
+            let aside = DVec2::new(refracted.x, refracted.z);
             let falls = surface.max_slope_along(aside.normalize_or_zero());
-            aside.length() * falls >= NEARLY * -way.y
+            aside.length() * falls >= NEARLY * -refracted.y
         })
     })
 }
 
-/// Ways of light that the waves make possible and that are not followed.
+/// Light paths that the waves make possible and that are not simulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct UnfollowedWays {
-    /// Slopes look away from a light.
-    pub turned: bool,
-    /// Rays come out of the water again.
-    pub again: bool,
+pub struct UnfollowedPaths {
+    /// Slopes face away from a light.
+    pub faces_away: bool,
+    /// Rays leave the water again.
+    pub leaves_again: bool,
     /// Troughs lie below the floor.
-    pub bared: bool,
+    pub bares_floor: bool,
 }
 
-impl UnfollowedWays {
-    /// Them in words; empty where there are none.
+impl UnfollowedPaths {
+    /// The possible paths in words; empty if there are none.
     pub fn words(self) -> Vec<&'static str> {
         let all = [
-            (self.turned, "slopes that look away from it"),
-            (self.again, "rays that come out of the water again"),
-            (self.bared, "troughs below the floor"),
+            (self.faces_away, "slopes that face away from the light"),
+            (self.leaves_again, "rays that leave the water again"),
+            (self.bares_floor, "troughs below the floor"),
         ];
         all.into_iter()
             .filter_map(|(is, words)| is.then_some(words))
@@ -119,14 +120,14 @@ impl UnfollowedWays {
 }
 
 impl SceneFacts {
-    /// Which ways of light the waves of this scene make possible that are not followed.
-    pub fn unfollowed_ways(&self) -> UnfollowedWays {
+    /// Light paths that the waves of this scene make possible and that are not simulated.
+    pub fn unfollowed_paths(&self) -> UnfollowedPaths {
         let any = |may: &dyn Fn(&BeamSet) -> bool| self.lights.beam_sets.iter().any(may);
         let floor = self.receivers.floor.as_ref();
-        UnfollowedWays {
-            turned: any(&|light| looks_away(&self.water.surface, light)),
-            again: any(&|light| may_leave_again(&self.water.surface, light, self.water.ior)),
-            bared: floor.is_some_and(|floor| self.water.surface.max_height_m() > -floor.y_m)
+        UnfollowedPaths {
+            faces_away: any(&|light| can_face_away(&self.water.surface, light)),
+            leaves_again: any(&|light| may_leave_again(&self.water.surface, light, self.water.ior)),
+            bares_floor: floor.is_some_and(|floor| self.water.surface.max_height_m() > -floor.y_m)
                 && any(&|light| !matches!(light.source, Source::Submerged { .. })),
         }
     }

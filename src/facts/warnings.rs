@@ -1,12 +1,12 @@
-//! What is left out, sub-sampled or not simulated, as far as a scene tells before its frame, with the flux concerned; what only the
-//! frame can measure is put to it by the frame.
+//! Warnings that are known before rendering: what is left out, sub-sampled or not simulated, with the flux concerned. The frame adds the
+//! flux that only it can measure.
 
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::blocked::{self, Blocked};
 use super::source::Source;
-use super::stopped::{self, Stopped};
 use super::unfollowed;
 use super::window::Rect;
 use super::{BeamSet, SceneFacts};
@@ -14,19 +14,19 @@ use crate::mesh::{Mesh, mtl, repair};
 use crate::scene::ResolvedScene;
 use crate::stats::Warning;
 
-/// Cells along the shortest wave below which caustics are washed out.
+/// Fewest cells per shortest wave; with fewer, caustics are blurred.
 const CELLS_PER_WAVE: f64 = 8.0;
-/// Water cells above the water within which a point light's rays spread too fast for the grid.
+/// Height of a point light over the water, in water cells, below which its rays diverge too fast for the grid.
 const CLOSE_CELLS: f64 = 4.0;
 
-/// Share of the largest face of an object's box below which what is seen of it is rounding.
-const NOTHING: f64 = 1e-6;
-/// Least height of a point light over the water at rest that its solid angle is reckoned with, as a share of how close cells count.
+/// Projected area of an object's box, as a share of its largest face, below which it is only rounding error.
+const NEGLIGIBLE: f64 = 1e-6;
+/// Least height of a point light over the water at rest for its solid angle, as a share of the height that counts as close.
 const LEAST_HEIGHT: f64 = 1e-9;
 
-/// Code of the warning that scattered light is lost; its flux is known after the frame.
+/// Code of the warning that scattered light is lost; the frame adds its flux.
 pub const SCATTERING_NOT_FOLLOWED: &str = "scattering_not_followed";
-/// Code of the warning that cells are coarse for the waves; its flux is known after the frame.
+/// Code of the warning that cells are coarse for the waves; the frame adds its flux.
 pub const WAVES_UNDERSAMPLED: &str = "waves_undersampled";
 
 fn warning(code: &str, message: impl Into<String>, pointer: impl Into<String>) -> Warning {
@@ -43,22 +43,22 @@ fn with_flux(warning: Warning, flux_w: [f64; 3]) -> Warning {
     }
 }
 
-/// All that a scene tells before its frame.
+/// All warnings that can be found before rendering.
 pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warning> {
     let meshes = &resolved.meshes;
-    let stopped = Stopped::new(facts, meshes);
+    let blocked = Blocked::new(facts, meshes);
     let mut all = Vec::new();
     all.extend(scattering(&resolved.scene.water.scattering_per_m));
-    all.extend(mended_meshes(facts, meshes));
-    all.extend(dry_parts(facts, &stopped));
+    all.extend(repaired_meshes(facts, meshes));
+    all.extend(dry_parts(facts, &blocked));
     all.extend(thin_objects(facts, meshes));
-    all.extend(left_out_by_method(facts, &stopped));
+    all.extend(left_out_by_method(facts, &blocked));
     all.extend(coarse_cells(facts));
     for light in &facts.lights.beam_sets {
         all.extend(from_below(light));
-        all.extend(within_objects(facts, light, &stopped));
+        all.extend(within_objects(facts, light, &blocked));
         all.extend(close_to_water(facts, light));
-        if unfollowed::looks_away(&facts.water.surface, light) {
+        if unfollowed::can_face_away(&facts.water.surface, light) {
             all.push(unfollowed::waves_shade_waves(light.light_index));
         }
     }
@@ -75,8 +75,8 @@ fn scattering(scattering_per_m: &[f64; 3]) -> Option<Warning> {
     })
 }
 
-/// What was left out of meshes or clamped when they were read; once for each mesh, at the first object of it.
-fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
+/// Repairs and clamped values that were found when meshes were read; once per mesh, at its first object.
+fn repaired_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
     let is_first = |index: usize| {
         let id = &meshes[index].id;
         meshes[..index].iter().all(|mesh| mesh.id != *id)
@@ -91,12 +91,12 @@ fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
     };
     let shows_material = &shows_material;
     let of_object = |index: usize| {
-        let told = meshes[index].warnings.iter();
-        told.filter_map(move |w| {
+        let reported = meshes[index].warnings.iter();
+        reported.filter_map(move |w| {
             let at = format!("/objects/{index}/mesh");
             let found = warning(&w.code, w.message.clone(), at);
             if repair::LEFT_OUT.contains(&w.code.as_str()) {
-                // Neither what has no area nor what is there twice stops any light.
+                // Triangles without area and duplicates block no additional light.
                 Some(with_flux(found, [0.0; 3]))
             } else {
                 (w.code == mtl::CLAMPED && shows_material(&meshes[index].id)).then_some(found)
@@ -109,8 +109,8 @@ fn mended_meshes(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
         .collect()
 }
 
-/// Objects above the water, or reaching out of it: their shadows on the water.
-fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
+/// Objects above the water or reaching out of it: their shadows on the water are not simulated.
+fn dry_parts(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning> {
     let mut through_water = facts
         .lights
         .beam_sets
@@ -127,7 +127,7 @@ fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
                 "the object is above the water; its shadow on the water is not simulated",
                 at,
             );
-            return Some(with_flux(found, stopped.above_water_w(index)));
+            return Some(with_flux(found, blocked.above_water_w(index)));
         }
         if object.max.y <= 0.0 {
             return None;
@@ -137,8 +137,8 @@ fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
             "the object reaches through the water at rest; the shadow of its dry part on the water is not simulated",
             at,
         );
-        let flux_w = stopped.above_water_w(index);
-        // What stays below the highest crests may never be seen out of the water.
+        let flux_w = blocked.above_water_w(index);
+        // A part below the highest crests may never be out of the water.
         let is_clear = object.max.y > facts.water.surface.max_height_m();
         (is_clear || flux_w != [0.0; 3]).then(|| with_flux(found, flux_w))
     };
@@ -151,7 +151,7 @@ fn dry_parts(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
         .collect()
 }
 
-/// Objects whose bounds are thinner than a texel of their level map somewhere across the light.
+/// Objects whose bounds, seen from the light, are narrower than a texel of their level map.
 fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
     let of_object = |index: usize| {
         let object = &facts.receivers.objects[index];
@@ -163,8 +163,8 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
             };
             let texel_m = level_box.density_per_flux.powf(-0.5);
             let across = object.across(&meshes[index], level_box.axis);
-            // A sheet that is seen from its edge stops nothing.
-            if across.width_m >= texel_m || across.area_m2 <= NOTHING * across.largest_m2 {
+            // A sheet seen edge-on blocks nothing.
+            if across.width_m >= texel_m || across.area_m2 <= NEGLIGIBLE * across.largest_m2 {
                 continue;
             }
             let middle_m = object.wet_middle();
@@ -185,7 +185,7 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
             "more quality.level_map_texels help"
         };
         let message = format!(
-            "across the light the object is {width_m:.1e} m thin, less than a texel of its level map of {texel_m:.1e} m: part of the light that it stops, all of it at most, gets through; {helps}"
+            "seen from the light the object is {width_m:.1e} m wide, less than a texel of its level map of {texel_m:.1e} m: some or all of the light that it should block gets through; {helps}"
         );
         let at = format!("/objects/{index}");
         Some(with_flux(
@@ -196,8 +196,8 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
     facts.wet_objects().filter_map(of_object).collect()
 }
 
-/// What the method leaves out.
-fn left_out_by_method(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning> {
+/// Effects that the method leaves out.
+fn left_out_by_method(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning> {
     let mut all = Vec::new();
     let wet = facts.wet_objects().count();
     if facts.lights.lit.is_empty() {
@@ -208,18 +208,18 @@ fn left_out_by_method(facts: &SceneFacts, stopped: &Stopped<'_>) -> Vec<Warning>
         let found = warning(
             "objects_cast_no_shadows_on_objects",
             format!(
-                "method {} knows nothing of other objects: light that one object blocks still reaches the others",
+                "method {} lights each object as if it were alone: light that one object blocks still reaches the others",
                 method.name
             ),
             "/quality/method",
         );
-        all.push(with_flux(found, stopped.stopped_again_w()));
+        all.push(with_flux(found, blocked.blocked_again_w()));
     }
     if wet > 0 && facts.quality.layers > 1 && method.leaves_out.further_layers {
         all.push(warning(
             "further_layers_stay_dark",
             format!(
-                "method {} lights what the light direction sees first; further layers stay dark",
+                "method {} lights only the first surface along the light; further layers stay dark",
                 method.name
             ),
             "/quality/layers",
@@ -235,13 +235,13 @@ impl SceneFacts {
     }
 }
 
-/// Cells along a side of a light's grid that the shortest wave wants.
+/// Cells along a side of a light's grid that the shortest wave needs.
 fn cells_needed(facts: &SceneFacts, light: &BeamSet) -> f64 {
     let widest_m = light.span_m(facts.quality.water_cells);
     (widest_m * CELLS_PER_WAVE / facts.water.surface.shortest_wave_m()).ceil()
 }
 
-/// Where a cell of the water is too large for the shortest wave.
+/// The light whose water cells are coarsest for the shortest wave.
 fn coarse_cells(facts: &SceneFacts) -> Option<Warning> {
     let light = facts
         .lights
@@ -266,14 +266,14 @@ fn from_below(light: &BeamSet) -> Option<Warning> {
     light.is_submerged().then(|| {
         let found = warning(
             "light_from_below_not_followed",
-            "the light is under water; what it sends up to the surface, half of its power at most, is not followed into the air or back down",
+            "the light is under water; the light it sends up to the surface, at most half of its power, is not traced into the air or back down",
             format!("/lights/{}", light.light_index),
         );
         with_flux(found, light.power.map(|i| std::f64::consts::TAU * i))
     })
 }
 
-fn within_objects(facts: &SceneFacts, light: &BeamSet, stopped: &Stopped<'_>) -> Vec<Warning> {
+fn within_objects(facts: &SceneFacts, light: &BeamSet, blocked: &Blocked<'_>) -> Vec<Warning> {
     let Some(position_m) = light.source.position_m() else {
         return Vec::new();
     };
@@ -281,15 +281,15 @@ fn within_objects(facts: &SceneFacts, light: &BeamSet, stopped: &Stopped<'_>) ->
         let found = warning(
             "light_within_object",
             format!(
-                "the light is within the bounds of object {index}; of what surrounds it only the side that the object's level map shows is lit, by part of the flux that goes to the object"
+                "the light is within the bounds of object {index}; of the surfaces around the light, only the side in the object's level map is lit, by part of the flux onto the object"
             ),
             format!("/lights/{}", light.light_index),
         );
-        with_flux(found, stopped.onto_w(index, position_m, light.power))
+        with_flux(found, blocked.onto_w(index, position_m, light.power))
     };
     facts
         .wet_objects()
-        .filter(|&index| stopped::is_around(&facts.receivers.objects[index], position_m))
+        .filter(|&index| blocked::is_around(&facts.receivers.objects[index], position_m))
         .map(of_object)
         .collect()
 }
@@ -316,11 +316,11 @@ fn close_to_water(facts: &SceneFacts, light: &BeamSet) -> Option<Warning> {
     let unit = near
         .grown(close_m)
         .within(light.window)
-        .map_or(0.0, |rect| stopped::rect_sr(rect, from_m));
+        .map_or(0.0, |rect| blocked::rect_sr(rect, from_m));
     let found = warning(
         "light_close_to_water",
         format!(
-            "the light is {:.1e} m above the water at rest, less than {CLOSE_CELLS} of the smallest water cells of {finest_m:.1e} m: where the light of the cells around its foot goes is coarse",
+            "the light is {:.1e} m above the water at rest, less than {CLOSE_CELLS} of the smallest water cells of {finest_m:.1e} m: the light of the cells around its foot is placed coarsely",
             position_m.y
         ),
         format!("/lights/{}", light.light_index),

@@ -30,12 +30,12 @@ impl WaterFacts {
         }
     }
 
-    /// Whether any light is lost on its way through the water.
+    /// Whether the water absorbs or scatters any light.
     pub fn attenuates(&self) -> bool {
         self.extinction_per_m.iter().any(|&c| c > 0.0)
     }
 
-    /// The water as the light of a sun or lamp meets it whose colours are not told apart by wavelength.
+    /// A single band for all colours, for lights without dispersion.
     pub(super) fn band(&self) -> Band {
         Band {
             ior: self.ior,
@@ -51,7 +51,7 @@ pub(super) fn surface_around(scene: &Scene, origin_m: DVec3) -> Surface {
     Surface::of(scene).recentred(DVec2::new(origin_m.x, origin_m.z))
 }
 
-/// A band of wavelengths: the water as its light meets it, and what it gives to each colour channel.
+/// A band of wavelengths: optics of the water for it, and its weight in each colour channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
     /// Index of refraction.
@@ -65,7 +65,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// 1 when all colour channels fade alike on their way, else 3.
+    /// Number of colour channels to trace: 1 if all have the same extinction, else 3.
     pub fn channels(&self) -> u32 {
         let c = self.extinction_per_m;
         if c[0] == c[1] && c[1] == c[2] { 1 } else { 3 }

@@ -1,4 +1,4 @@
-//! Which piece of the water lights a receiver, and which piece of the floor a camera sees.
+//! Windows: the rectangle of water whose light can reach the receivers. Also the part of the floor that a camera sees.
 
 use glam::{DVec2, DVec3};
 
@@ -6,15 +6,15 @@ use super::source::Source;
 use super::{CameraFacts, SceneFacts};
 use crate::physics::refraction;
 
-/// Directions in which the steepest tilts are looked up.
+/// Number of azimuths at which the steepest slopes are evaluated.
 const RIM_DIRECTIONS: u32 = 64;
 /// Farther than anything in a scene, m.
 pub(super) const EVERYWHERE_M: f64 = 1e9;
-/// Widening for tilts between the ones looked up.
+/// Widening for slopes between the evaluated ones.
 const MARGIN: f64 = 0.01;
-/// How far f32 may be off where a ray ends, as a share of its coordinates and depth: eight spacings of numbers near 1.
+/// f32 rounding error of a ray's end point, as a share of its coordinates and depth: eight spacings of numbers near 1.
 const F32_ROUNDINGS: f64 = 8.0 * f32::EPSILON as f64;
-/// Rays per side of the picture that look for the visible floor.
+/// Rays per side of the picture that search for the visible floor.
 const VIEW_SAMPLES: u32 = 33;
 
 /// A horizontal rectangle, local (x, z) in m.
@@ -39,12 +39,12 @@ impl Rect {
         }
     }
 
-    /// Whether a place lies in it.
+    /// Whether a point lies in it.
     pub(super) fn holds(&self, at: DVec2) -> bool {
         at.cmpge(self.min).all() && at.cmple(self.max).all()
     }
 
-    /// What lies in another one too; `None` where that is nothing.
+    /// Intersection with another rectangle; `None` if it is empty.
     pub(super) fn within(self, other: Self) -> Option<Self> {
         let both = Self {
             min: self.min.max(other.min),
@@ -53,7 +53,7 @@ impl Rect {
         both.min.cmplt(both.max).all().then_some(both)
     }
 
-    /// Distance of a point above or under the rectangle at rest, m.
+    /// Distance of a 3D point from the rectangle on the water at rest, m.
     pub(super) fn distance_m(&self, p: DVec3) -> f64 {
         let at = DVec2::new(p.x, p.z);
         let aside = (self.min - at).max(at - self.max).max(DVec2::ZERO);
@@ -68,7 +68,7 @@ impl Rect {
     }
 }
 
-/// The bounds of something that light may have to reach, local, m.
+/// The bounds of a receiver that needs light, local, m.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lit {
     pub(super) min: DVec3,
@@ -92,7 +92,7 @@ impl Lit {
     }
 }
 
-/// What the output wants lit under water: the floor's map and wet objects.
+/// The receivers under water that the output needs light on: the floor's map and wet objects.
 pub(super) fn receivers(facts: &SceneFacts) -> Vec<Lit> {
     let mut all = Vec::new();
     if let (Some(map), Some(floor)) = (&facts.receivers.floor_map, &facts.receivers.floor) {
@@ -125,7 +125,7 @@ pub enum Region {
     Rect(Rect),
 }
 
-/// How far a ray under water drifts sideways per metre of depth, over all tilts of the surface.
+/// Range of the sideways drift of rays under water per metre of depth, over all slopes of the surface.
 struct Drift {
     low: DVec2,
     high: DVec2,
@@ -141,7 +141,7 @@ fn drift(facts: &SceneFacts, direction: DVec3) -> Option<Drift> {
     for slope in tilts {
         let normal = refraction::normal_from_slope(slope.x, slope.y);
         if direction.dot(normal) >= 0.0 {
-            continue; // looks away from the light: nothing comes through
+            continue; // faces away from the light: nothing enters
         }
         let Some(ray) = refraction::refract_direction(direction, normal, facts.water.ior) else {
             continue;
@@ -181,8 +181,8 @@ fn object_entry(facts: &SceneFacts, index: usize, drift: &Drift) -> Rect {
     entry(lit.rect(), drift, -lit.max.y - height, -lit.min.y + height)
 }
 
-/// The rectangle of water beside which no light can reach an object, whether that is asked for or stands in the way; `None` where no
-/// object is under water. Only of a sun is it known to be less than all of the water.
+/// The rectangle of water that contains all light that can reach an object, whether the object is the requested receiver or only blocks
+/// light; `None` where no object is under water. It is tight only for suns; for point lights it is all of the water.
 pub(super) fn objects_window(facts: &SceneFacts, source: &Source) -> Option<Rect> {
     let Source::Sun { to_light } = *source else {
         facts.wet_objects().next()?;
@@ -196,11 +196,11 @@ pub(super) fn objects_window(facts: &SceneFacts, source: &Source) -> Option<Rect
         .wet_objects()
         .map(|index| object_entry(facts, index, &drift))
         .reduce(Rect::including)?;
-    // Wider by far more than f32 rounds.
+    // The margin is far larger than f32 rounding.
     Some(all.grown(1e-3 * all.size().max_element()))
 }
 
-/// The rectangle of water whose light can reach the receivers, or `None` when nothing gets through.
+/// The rectangle of water whose light from a sun can reach the receivers; `None` if no light gets through.
 pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
     let drift = drift(facts, -to_light)?;
     let height = facts.water.surface.max_height_m();
@@ -209,8 +209,8 @@ pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
         let rect = entry(lit.rect(), &drift, -lit.max.y - height, -lit.min.y + height);
         window = Some(window.map_or(rect, |w| w.including(rect)));
     }
-    // A margin against rounding at the rim, so that no texel at the edge misses a sliver: a share of the window, and of how far from
-    // the origin and below the water f32 has to hold the ends of its rays.
+    // A margin for rounding at the rim, so that no texel at the edge loses light: a share of the window's size, or of the distance from
+    // the origin and below the water at which rays end in f32.
     let deepest_m = facts
         .receivers
         .floor
@@ -222,7 +222,7 @@ pub fn light_window(facts: &SceneFacts, to_light: DVec3) -> Option<Rect> {
     })
 }
 
-/// The part of the floor that a camera can see, through waves and all.
+/// The part of the floor that a camera can see through any waves.
 pub fn visible_floor(facts: &SceneFacts, camera: &CameraFacts) -> Region {
     let Some(floor) = &facts.receivers.floor else {
         return Region::Nothing;

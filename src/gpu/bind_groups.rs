@@ -1,4 +1,4 @@
-//! What an entry point binds, and bind groups that are kept from frame to frame.
+//! Bindings of entry points, and bind groups that are kept from frame to frame.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ pub enum Binding<'a> {
     Buffer {
         /// The buffer.
         buffer: &'a wgpu::Buffer,
-        /// How many of its bytes.
+        /// Number of bytes that are bound.
         bytes: u64,
     },
     /// Constants, for a `var<uniform>`.
@@ -21,7 +21,7 @@ pub enum Binding<'a> {
     Texture(&'a wgpu::TextureView),
 }
 
-/// What an entry point reads and writes, ready to be set at group 0.
+/// Bind group 0 of an entry point, with its dynamic offsets.
 #[derive(Clone, Debug)]
 pub struct Bound {
     /// The group.
@@ -30,9 +30,9 @@ pub struct Bound {
     pub offsets: Vec<u32>,
 }
 
-/// Bind groups by what they bind, kept from frame to frame as long as the [pool](super::BufferPool) keeps buffers: making one takes a
-/// frame's host as long as all the rest of a dispatch. They keep their buffers alive, so whoever drops buffers earlier
-/// [clears](Self::clear) them.
+/// Cache of bind groups, keyed by layout and buffers. Groups are kept as long as the [pool](super::BufferPool) keeps buffers, because
+/// making one takes the host as long as the rest of a dispatch. They keep their buffers alive, so code that drops buffers earlier must
+/// [clear](Self::clear) them.
 #[derive(Debug, Default)]
 pub struct BindGroups {
     kept: BTreeMap<(wgpu::BindGroupLayout, Vec<(wgpu::Buffer, u64)>), KeptGroup>,
@@ -47,7 +47,7 @@ struct KeptGroup {
 }
 
 impl BindGroups {
-    /// Starts a frame: what was not used for some frames is dropped, no later than the buffers it binds.
+    /// Starts a frame: drops groups that were not used for some frames, no later than the buffers they bind.
     pub fn begin_frame(&mut self) {
         self.frame += 1;
         let frame = self.frame;
@@ -60,7 +60,7 @@ impl BindGroups {
         self.kept.clear();
     }
 
-    /// How many were made since the start.
+    /// Number of groups made since the start.
     pub fn made(&self) -> u64 {
         self.made
     }

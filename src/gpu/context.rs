@@ -1,4 +1,4 @@
-//! Opens an adapter by policy and keeps what goes wrong on its device.
+//! Opens an adapter by policy and records the errors of its device.
 
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -9,10 +9,10 @@ use super::GpuError;
 use crate::config::AdapterPolicy;
 use crate::stats::AdapterStats;
 
-/// Longest wait for one submission, s; a submission that takes longer counts as hung.
+/// Longest wait for submitted work, s; work that takes longer counts as hung.
 pub const WAIT_S: u64 = 300;
 
-/// Errors that wgpu reported outside any call's result; the first is kept, a loss of the device outranks the rest.
+/// Errors that wgpu reported outside any call's result. The first one is kept; a loss of the device takes precedence.
 #[derive(Debug, Default)]
 struct ErrorLog {
     first: Option<GpuError>,
@@ -26,7 +26,7 @@ pub struct GpuContext {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// What the device may be asked for.
+    /// The limits that the device was opened with.
     pub limits: wgpu::Limits,
     /// Whether pass timestamps can be taken.
     pub timestamps: bool,
@@ -87,9 +87,9 @@ impl GpuContext {
         self.readback_peak.swap(0, Ordering::Relaxed)
     }
 
-    /// WGSL as this adapter runs it best. A CPU driver gets uniforms as read-only storage: lavapipe 22.3 makes a shader of its
-    /// own for every dispatch of a uniform that decides a branch or a loop, and keeps it (seen: 0.8 MiB and 5 ms per frame of
-    /// six passes). GPUs keep uniforms, and with them WebGPU's limit of eight storage buffers.
+    /// WGSL adapted to this adapter. A CPU driver gets uniforms as read-only storage: lavapipe 22.3 compiles and keeps a separate shader
+    /// for every dispatch with a uniform that decides a branch or a loop (seen: 0.8 MiB and 5 ms per frame of six passes). GPUs keep
+    /// uniforms, and with them WebGPU's limit of eight storage buffers.
     pub fn adapt<'a>(&self, text: &'a str) -> Cow<'a, str> {
         match self.uniforms_as() {
             wgpu::BufferBindingType::Uniform => text.into(),
@@ -99,7 +99,7 @@ impl GpuContext {
         }
     }
 
-    /// What a uniform is bound as: see [`Self::adapt`].
+    /// The buffer binding type of uniforms, see [`Self::adapt`].
     pub(super) fn uniforms_as(&self) -> wgpu::BufferBindingType {
         if self.adapter.software {
             wgpu::BufferBindingType::Storage { read_only: true }
@@ -108,7 +108,7 @@ impl GpuContext {
         }
     }
 
-    /// Where this runs.
+    /// The adapter.
     pub fn adapter(&self) -> &AdapterStats {
         &self.adapter
     }
@@ -139,14 +139,14 @@ impl GpuContext {
         }
     }
 
-    /// Frees what a frame that failed has left, and forgets what else went wrong in it: errors of what it made of a first error
-    /// are not the next frame's. A loss is not forgotten.
+    /// Frees what a failed frame has left, and discards its further errors, which follow from the first and must not fail the next frame.
+    /// A lost device stays lost.
     pub fn forget_errors(&self) {
         self.tidy();
         lock(&self.errors).first = None;
     }
 
-    /// Lets wgpu free what is no longer used; to be called also when idle.
+    /// Lets wgpu free unused memory; to be called also when idle.
     pub fn tidy(&self) {
         // The result only says whether the queue is empty.
         let _ = self.device.poll(wgpu::PollType::Poll);
@@ -182,13 +182,13 @@ fn listen(device: &wgpu::Device, errors: &Arc<Mutex<ErrorLog>>) {
     });
 }
 
-/// Baseline limits, raised where size decides what a scene may ask for.
+/// Baseline limits; those that restrict the size of scenes are raised to the adapter's.
 fn wanted_limits(adapter: &wgpu::Limits, software: bool) -> wgpu::Limits {
     let baseline = wgpu::Limits::default();
     let storage_buffers = baseline.max_storage_buffers_per_shader_stage;
     wgpu::Limits {
-        // Eight, and on a CPU driver the uniforms, with that of pieces: see `GpuContext::adapt`. Those are bound at offsets, which
-        // WebGPU promises for four.
+        // Eight. On a CPU driver also the uniforms, including that of pieces: see `GpuContext::adapt`. They are bound at dynamic offsets,
+        // of which WebGPU guarantees four.
         max_storage_buffers_per_shader_stage: if software {
             storage_buffers + 4
         } else {

@@ -1,4 +1,4 @@
-//! Pipelines whose bindings are matched by name: the WGSL variable's name is the only place where a binding is named.
+//! Pipelines whose bindings are matched by name: a binding is declared only once, by the name of its WGSL variable.
 
 use super::bind_groups::{BindGroups, Binding, Bound};
 use super::shader::{Access, Module, Reflected};
@@ -13,8 +13,8 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Builds entry point `entry` of `module`, which is assembled of shader file `path`, with values for `override` constants; all of them
-    /// have to be there.
+    /// Builds entry point `entry` of `module`, which was assembled from shader file `path`. `constants` sets values of
+    /// `override` constants; each of them must exist in the module.
     ///
     /// # Errors
     /// When there is no such entry point, or the device refuses it.
@@ -53,7 +53,7 @@ impl Kernel {
         })
     }
 
-    /// The same from assembled WGSL; `path` is for messages.
+    /// Like [`Self::new`], from assembled WGSL; `path` is for messages.
     ///
     /// # Errors
     /// When the shader is not valid.
@@ -67,15 +67,15 @@ impl Kernel {
         Self::new(gpu, path, &Module::parse(path, text)?, entry, constants)
     }
 
-    /// What the kernel binds.
+    /// The resources that the kernel binds.
     pub fn bindings(&self) -> &[Reflected] {
         &self.layout.bindings
     }
 
-    /// What `find` returns for each variable's name, bound; with a group of `groups` where that holds no textures.
+    /// Binds the resource that `find` returns for each variable's name. Uses a cached group of `groups` if there are no textures.
     ///
     /// # Errors
-    /// Where `find` has nothing for a variable, or not what it is.
+    /// When `find` has no resource for a variable, or one of another kind.
     pub fn bind<'a>(
         &self,
         gpu: &GpuContext,
@@ -91,14 +91,14 @@ impl Kernel {
     }
 }
 
-/// What a raster kernel draws into, and how.
+/// Targets and fixed-function state of a raster kernel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RasterTargets {
     /// Format and blending of each output of the fragment.
     pub colors: Vec<wgpu::ColorTargetState>,
     /// Depth and stencil test.
     pub depth: Option<wgpu::DepthStencilState>,
-    /// What is drawn, and which faces are left out.
+    /// Topology and culling.
     pub primitive: wgpu::PrimitiveState,
 }
 
@@ -111,7 +111,7 @@ pub struct RasterKernel {
 }
 
 impl RasterKernel {
-    /// Builds the pipeline of a vertex and a fragment entry point of `module`, which is assembled of shader file `path`.
+    /// Builds the pipeline of a vertex and a fragment entry point of `module`, which was assembled from shader file `path`.
     ///
     /// # Errors
     /// When there are no such entry points, or the device refuses them.
@@ -165,10 +165,10 @@ impl RasterKernel {
         })
     }
 
-    /// What `find` returns for each variable's name, bound; with a group of `groups` where that holds no textures.
+    /// Binds the resource that `find` returns for each variable's name. Uses a cached group of `groups` if there are no textures.
     ///
     /// # Errors
-    /// Where `find` has nothing for a variable, or not what it is.
+    /// When `find` has no resource for a variable, or one of another kind.
     pub fn bind<'a>(
         &self,
         gpu: &GpuContext,
@@ -247,7 +247,7 @@ impl BoundLayout {
         let (mut buffers, mut offsets) = (Vec::with_capacity(self.bindings.len()), Vec::new());
         for b in &self.bindings {
             let found = find(&b.name)
-                .ok_or_else(|| fault(format!("nothing is there to bind to `{}`", b.name)))?;
+                .ok_or_else(|| fault(format!("there is no resource to bind to `{}`", b.name)))?;
             let resource = match (found, b.access) {
                 (Binding::Buffer { buffer, bytes }, Access::StorageRead | Access::StorageWrite) => {
                     buffers.push((buffer.clone(), bytes));
@@ -262,7 +262,7 @@ impl BoundLayout {
                     offsets.push(placed.offset);
                     wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                         buffer: &placed.buffer,
-                        // Where in the buffer is said when it is set.
+                        // The dynamic offset is given when the group is set.
                         offset: 0,
                         size: wgpu::BufferSize::new(u64::from(bytes)),
                     })
@@ -271,7 +271,12 @@ impl BoundLayout {
                     Binding::Texture(view),
                     Access::Texture { .. } | Access::StorageTexture { .. },
                 ) => wgpu::BindingResource::TextureView(view),
-                _ => return Err(fault(format!("`{}` is bound to what it is not", b.name))),
+                _ => {
+                    return Err(fault(format!(
+                        "`{}` is bound to a resource of another kind",
+                        b.name
+                    )));
+                }
             };
             entries.push(wgpu::BindGroupEntry {
                 binding: b.binding,
@@ -285,7 +290,7 @@ impl BoundLayout {
                 entries: &entries,
             })
         };
-        // Textures are made anew for each level map, so that a group with one would not be asked for again.
+        // Views of textures are new for each level map, so a group with one would never be reused.
         let group = if buffers.len() == self.bindings.len() {
             groups.get(&self.layout, buffers, make)
         } else {

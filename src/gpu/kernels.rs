@@ -1,4 +1,4 @@
-//! Kernels that are compiled once: each for a shader, an entry point, and the values of the overrides that this entry point uses.
+//! Cache of compiled kernels, keyed by shader, entry point, and values of the overrides that the entry point uses.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ pub struct KernelId(usize);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RasterKernelId(usize);
 
-/// What tells compute kernels apart.
+/// Key of a compute kernel.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     path: String,
@@ -24,7 +24,7 @@ struct Key {
     in_pieces: bool,
 }
 
-/// What tells raster kernels apart.
+/// Key of a raster kernel.
 #[derive(Clone, Debug, PartialEq)]
 struct RasterKey {
     path: String,
@@ -32,7 +32,7 @@ struct RasterKey {
     targets: RasterTargets,
 }
 
-/// A shader file, parsed, and the overrides of its entry points as far as they were asked for.
+/// A parsed shader file, and the overrides of those entry points that were requested.
 #[derive(Debug)]
 struct Parsed {
     module: Module,
@@ -49,8 +49,8 @@ pub struct KernelCache {
 }
 
 impl KernelCache {
-    /// The kernel of entry point `entry` of shader file `path`. Of `constants` only those count that the entry point uses; with
-    /// `in_pieces` it is told which piece it runs, see [`pieces`].
+    /// The kernel of entry point `entry` of shader file `path`. Only those of `constants` count that the entry point uses. With `in_pieces`
+    /// it reads the offset of its piece from a uniform, see [`pieces`].
     ///
     /// # Errors
     /// When the shader is not valid, or the entry point cannot be cut.
@@ -82,7 +82,7 @@ impl KernelCache {
             return Ok(id);
         }
         let kernel = if in_pieces {
-            let text = pieces::told_its_piece(&parsed.module, path, entry)?;
+            let text = pieces::with_piece_offset(&parsed.module, path, entry)?;
             Kernel::from_text(gpu, path, text, entry, &constants)?
         } else {
             Kernel::new(gpu, path, &parsed.module, entry, &constants)?
@@ -128,18 +128,18 @@ impl KernelCache {
         &self.raster[id.0].1
     }
 
-    /// Kernels that were compiled, of either kind.
+    /// Number of compiled kernels, compute and raster.
     pub fn compiled(&self) -> usize {
         self.kernels.len() + self.raster.len()
     }
 
-    /// Shader files that were parsed.
+    /// Number of parsed shader files.
     pub fn parsed(&self) -> usize {
         self.modules.len()
     }
 }
 
-/// The module of a shader file, parsed when it is first asked for.
+/// The module of a shader file, parsed when it is first requested.
 fn parsed<'a>(
     modules: &'a mut BTreeMap<String, Parsed>,
     sources: &ShaderSources,

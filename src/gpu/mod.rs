@@ -1,4 +1,4 @@
-//! The GPU: one context, assembled and reflected shaders, pooled buffers, timing, readback. Knows nothing of water.
+//! The GPU: one context, assembled and reflected shaders, pooled buffers, timing, readback. Nothing here is about water.
 
 pub mod bind_groups;
 pub mod context;

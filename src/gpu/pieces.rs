@@ -1,23 +1,23 @@
-//! Long dispatches in pieces: a driver gives up on what runs for seconds, and nothing can be cancelled in the meantime.
+//! Long dispatches in pieces: drivers abort work that runs for seconds, and a running dispatch cannot be cancelled.
 //!
-//! A piece is a box of workgroups. WebGPU has no first workgroup for a dispatch, so the entry point is told by a uniform where its
-//! piece begins: [`told_its_piece`] rewrites the builtins of any entry point, and passes know nothing of it.
+//! A piece is a box of workgroups. WebGPU has no base workgroup for a dispatch, so a uniform holds the offset of the piece:
+//! [`with_piece_offset`] rewrites the builtins of any entry point to add it. Passes need no change.
 
 use bytemuck::{Pod, Zeroable};
 
 use super::GpuError;
 use super::shader::Module;
 
-/// Name of the uniform that says which piece is run.
+/// Name of the uniform with the offset of the current piece.
 pub const PIECE: &str = "piece_of_dispatch";
 
-/// Longest that a piece should run, ms. Aimed at is half of it, since the next piece may be dearer than the last.
+/// Longest time that a piece should run, ms. The target is half of it, since the next piece may be more expensive than the last.
 pub const LONGEST_MS: f64 = 50.0;
 
-/// Most by which a piece may be larger than the last: what was measured of few workgroups says little of many.
+/// Largest ratio of a piece's size to the last one's: the time of few workgroups says little about many.
 const GROWTH: f64 = 16.0;
 
-/// What the uniform holds: first workgroup of the piece, and workgroups of the whole dispatch.
+/// Content of the uniform: first workgroup of the piece, and workgroups of the whole dispatch.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct PieceUniform {
@@ -35,8 +35,8 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// The piece that comes after the first `done` workgroups of `all`, of `most` at most: whole layers, else whole rows, else a
-    /// part of a row. `None` when all are done.
+    /// The piece after the first `done` workgroups of `all`, with at most `most` of them: whole layers, else whole rows, else a part of a
+    /// row. `None` when all are done.
     pub fn after(all: [u32; 3], done: u64, most: u64) -> Option<Self> {
         let [x, y, z] = all.map(u64::from);
         if done >= x * y * z {
@@ -51,7 +51,7 @@ impl Piece {
         } else {
             [most.min(x - at[0]), 1, 1]
         };
-        // All are below a u32 of `all`.
+        // No component exceeds that of `all`, so each fits u32.
         let narrow = |v: [u64; 3]| v.map(|v| u32::try_from(v).unwrap_or(u32::MAX));
         Some(Self {
             first: narrow(at),
@@ -59,12 +59,12 @@ impl Piece {
         })
     }
 
-    /// How many workgroups it has.
+    /// Number of its workgroups.
     pub fn count(&self) -> u64 {
         self.groups.map(u64::from).iter().product()
     }
 
-    /// What its entry point is told.
+    /// The uniform for its entry point.
     pub fn uniform(&self, all: [u32; 3]) -> PieceUniform {
         let wide = |[x, y, z]: [u32; 3]| [x, y, z, 0];
         PieceUniform {
@@ -74,18 +74,18 @@ impl Piece {
     }
 }
 
-/// Most workgroups for the piece after one of `groups` that took `ms`.
+/// Largest number of workgroups for the piece after one of `groups` workgroups that took `ms`.
 pub fn next_size(groups: u64, ms: f64) -> u64 {
     let factor = (0.5 * LONGEST_MS / ms.max(1e-3)).min(GROWTH);
     ((groups as f64 * factor) as u64).max(1)
 }
 
-/// The shader with entry point `entry` reading its builtins from the uniform [`PIECE`]: `workgroup_id` and `global_invocation_id`
-/// count from the start of the whole dispatch, `num_workgroups` is that of the whole dispatch.
+/// The shader text with entry point `entry` rewritten to run in pieces, by means of the uniform [`PIECE`]: `workgroup_id` and
+/// `global_invocation_id` count from the start of the whole dispatch, `num_workgroups` is that of the whole dispatch.
 ///
 /// # Errors
 /// When `entry` is not there, or its parameters cannot be read.
-pub fn told_its_piece(module: &Module, path: &str, entry: &str) -> Result<String, GpuError> {
+pub fn with_piece_offset(module: &Module, path: &str, entry: &str) -> Result<String, GpuError> {
     let fault = |message: &str| GpuError::Shader {
         shader: path.to_owned(),
         message: format!("`{entry}` cannot be run in pieces: {message}"),
@@ -133,7 +133,9 @@ pub fn told_its_piece(module: &Module, path: &str, entry: &str) -> Result<String
         lines += &format!(" let {name} = {};", value.replace("PARAMETER", &parameter));
     }
     if lines.is_empty() {
-        return Err(fault("nothing tells it which workgroup it is"));
+        return Err(fault(
+            "it reads no builtin with its position in the dispatch",
+        ));
     }
     Ok(format!(
         "{}{signature}{{{lines}{}\nstruct PieceOfDispatch {{ first: vec3u, all: vec3u }}\n\

@@ -1,11 +1,11 @@
 //! Buffers that are lent to a frame and taken back, with an exact account of their bytes.
 
-/// How many frames a free buffer may lie unused before it is dropped.
+/// Number of frames for which an unused buffer is kept.
 pub(super) const KEEP_FRAMES: u64 = 4;
 
 #[derive(Debug)]
 struct Free {
-    /// What it was lent as.
+    /// The label it was lent under.
     label: &'static str,
     buffer: wgpu::Buffer,
     last_used: u64,
@@ -21,11 +21,11 @@ pub struct BufferPool {
 }
 
 impl BufferPool {
-    /// Starts a frame, with nothing lent: forgets the last peak, drops what was not used for some frames, and then, what was
-    /// used longest ago first, as much as it takes to keep no more than `free_budget_bytes`. Whether it took any.
+    /// Starts a frame, with nothing lent: resets the peak and drops buffers that were not used for some frames. Then drops the least
+    /// recently used ones until at most `free_budget_bytes` are kept, and returns whether that dropped any.
     pub fn begin_frame(&mut self, free_budget_bytes: u64) -> bool {
         self.frame += 1;
-        // A frame that failed half-way has dropped what it was lent.
+        // A frame that failed half-way has dropped its buffers.
         self.lent_bytes = 0;
         self.peak_bytes = self.lent_bytes;
         let frame = self.frame;
@@ -40,8 +40,8 @@ impl BufferPool {
         makes_room
     }
 
-    /// Lends a buffer of exactly `bytes` (rounded up to 4) with `usage`; its content is undefined. It is one that was lent as the same
-    /// before if there is one, so that frame after frame binds the same.
+    /// Lends a buffer of exactly `bytes` (rounded up to 4) with `usage`; its content is undefined. Prefers a buffer that was lent under the
+    /// same label before, so that successive frames bind the same buffers.
     pub fn lend(
         &mut self,
         device: &wgpu::Device,

@@ -1,10 +1,10 @@
-//! Results back to the host.
+//! Copies results from the GPU to the host.
 
 use bytemuck::Pod;
 
 use super::{GpuContext, GpuError};
 
-/// A result on its way to the host.
+/// A recorded or submitted copy of a result to the host.
 #[derive(Debug)]
 pub struct Staged(wgpu::Buffer);
 
@@ -28,11 +28,11 @@ pub fn stage(
 }
 
 impl Staged {
-    /// The values, once the copy is submitted; waits for everything submitted.
+    /// Reads the values; the copy must have been submitted. Waits for everything submitted.
     pub fn read<T: Pod>(self, gpu: &GpuContext) -> Result<Vec<T>, GpuError> {
         let (send, receive) = std::sync::mpsc::channel();
         self.0.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only when the wait below failed, and then nobody cares.
+            // The receiver is gone only if the wait below failed; then the result is unused.
             let _ = send.send(result);
         });
         gpu.wait()?;

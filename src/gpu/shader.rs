@@ -1,7 +1,7 @@
-//! WGSL: `#import`, and what an entry point binds.
+//! WGSL: `#import`, and reflection of the resources that an entry point binds.
 //!
-//! `#import "path"` on a line of its own pastes a file once per module, wherever it is named first; an unknown path is an
-//! error. There are no conditions and no renaming.
+//! `#import "path"` on a separate line pastes a file once per module, at the first import. An unknown path is an error. There are no
+//! conditions and no renaming.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -162,7 +162,7 @@ impl Module {
         Ok(Self { ir, info, text })
     }
 
-    /// What `entry` binds, by binding number.
+    /// The resources that `entry` binds, by binding number.
     pub fn bindings(&self, name: &str, entry: &str) -> Result<Vec<Reflected>, GpuError> {
         let used = self.info.get_entry_point(self.index_of(name, entry)?);
         let mut found = Vec::new();
@@ -210,7 +210,7 @@ impl Module {
     pub fn overrides_of(&self, name: &str, entry: &str) -> Result<Vec<String>, GpuError> {
         let ir = &self.ir;
         let entry = &ir.entry_points[self.index_of(name, entry)?];
-        // What other constants are made of counts everywhere.
+        // Overrides in module-scope expressions count for every entry point.
         let mut used = overrides_in(&ir.global_expressions);
         let mut seen = BTreeSet::new();
         let mut pending = vec![&entry.function];
@@ -270,7 +270,7 @@ fn overrides_in(
         .collect()
 }
 
-/// The functions that a block calls itself.
+/// The functions that a block calls directly.
 fn calls(block: &naga::Block, into: &mut Vec<naga::Handle<naga::Function>>) {
     for statement in block {
         match statement {
@@ -338,7 +338,7 @@ fn texture_access(
                 (true, false) => Storage::ReadOnly,
                 _ => Storage::WriteOnly,
             },
-            // Those that every WebGPU device can store to and that passes use.
+            // Formats that every WebGPU device can store to and that passes use.
             format: match format {
                 naga::StorageFormat::R32Float => Format::R32Float,
                 naga::StorageFormat::R32Uint => Format::R32Uint,

@@ -1,10 +1,10 @@
-//! Time per pass: by timestamp queries on a GPU; on a CPU driver, whose timestamps say nothing about compute (seen on lavapipe
-//! 22.3: 110 ms of spans in 750 ms of work), by the host's clock around a submission of each pass's own. Absent wherever the
-//! numbers cannot be trusted.
+//! Time per pass. On a GPU it is measured by timestamp queries. The timestamps of a CPU driver say nothing about compute (seen on lavapipe
+//! 22.3: 110 ms of spans in 750 ms of work), so there each pass is submitted alone and timed on the host. Times that cannot be trusted are
+//! absent.
 
 use super::{GpuContext, GpuError, readback};
 
-/// Most passes that one frame times; what comes later is not timed, and then has no time at all.
+/// Largest number of timed passes per frame. A label with any later pass gets no time at all.
 const MAX_SPANS: u32 = 1024;
 
 /// Timestamps around the passes of one frame.
@@ -12,10 +12,10 @@ const MAX_SPANS: u32 = 1024;
 pub struct Timing {
     queries: Option<wgpu::QuerySet>,
     labels: Vec<&'static str>,
-    /// Labels with passes that found no place.
+    /// Labels with passes beyond that limit.
     untimed: Vec<&'static str>,
     by_host: bool,
-    /// Under which label everything goes for now.
+    /// The label that all passes currently count under, if any.
     group: Option<&'static str>,
     host_ms: Vec<(&'static str, f64)>,
 }
@@ -49,12 +49,12 @@ impl Timing {
         self.group = None;
     }
 
-    /// Whether each pass is to be submitted, waited for and [noted](Self::note) on its own.
+    /// Whether each pass must be submitted alone, waited for and [noted](Self::note).
     pub fn by_host(&self) -> bool {
         self.by_host && self.group.is_none()
     }
 
-    /// Whether the host may time passes where the adapter's timestamps say nothing.
+    /// Sets whether the host may time passes if the adapter's timestamps are unusable.
     pub fn allow_host(&mut self, gpu: &GpuContext, allowed: bool) {
         self.by_host = gpu.adapter().software && allowed;
     }
@@ -64,12 +64,12 @@ impl Timing {
         self.by_host
     }
 
-    /// How many passes are timed so far.
+    /// Number of passes timed so far.
     pub fn mark(&self) -> usize {
         self.labels.len()
     }
 
-    /// Takes back the passes that were recorded since a [mark](Self::mark), and will not run.
+    /// Discards the passes that were recorded since a [mark](Self::mark) and will not run.
     pub fn forget_since(&mut self, mark: usize) {
         self.labels.truncate(mark);
     }
@@ -121,7 +121,7 @@ impl Timing {
             usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        // A submission of its own: resolving in the one that wrote the queries gives zeros on some Vulkan drivers.
+        // A separate submission: resolving in the submission that wrote the queries gives zeros on some Vulkan drivers.
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -1,12 +1,12 @@
-//! Small constants: equal bytes share a place in a buffer, within a frame and with the frames before. They are bound at an offset, so that
-//! what binds them does not change with what they hold.
+//! Uniform data: equal bytes share a place in a buffer, within a frame and with earlier frames. They are bound at a dynamic offset, so
+//! bind groups do not change with their content.
 
 use std::collections::BTreeMap;
 
 use super::GpuContext;
 use super::pool::KEEP_FRAMES;
 
-/// Places begin at multiples of this: no device asks for more.
+/// Alignment of places, bytes: no device requires more.
 const ALIGNMENT: u64 = 256;
 /// Bytes of a buffer of places.
 const BUFFER_BYTES: u64 = 1 << 16;
@@ -20,14 +20,14 @@ pub struct Placed {
     pub offset: u32,
 }
 
-/// Constants by what they are, kept for some frames. There are no more buffers than the frames since the start (or since the last idleness)
-/// needed at once.
+/// Uniform data by content, kept for some frames. The number of buffers is the largest that frames have needed at once since the start (or
+/// since the last idle time).
 #[derive(Debug, Default)]
 pub struct Uniforms {
     kept: BTreeMap<Vec<u8>, KeptPlace>,
-    /// Places that nobody needs any more, by their room.
+    /// Unused places, by size.
     free: BTreeMap<u64, Vec<(wgpu::Buffer, u32)>>,
-    /// The newest buffer, and where it is empty from.
+    /// The newest buffer, and the offset from which it is empty.
     newest: Option<(wgpu::Buffer, u64)>,
     frame: u64,
 }
@@ -39,7 +39,7 @@ struct KeptPlace {
 }
 
 impl Uniforms {
-    /// Starts a frame: places that were not used for some frames are free.
+    /// Starts a frame: places that were not used for some frames become free.
     pub fn begin_frame(&mut self) {
         self.frame += 1;
         let (frame, free) = (self.frame, &mut self.free);
@@ -53,7 +53,7 @@ impl Uniforms {
         });
     }
 
-    /// The place that holds `bytes` for what is submitted from now on; nobody else may write to it.
+    /// The place that holds `bytes` for everything submitted from now on; only this function writes to it.
     pub fn get(&mut self, gpu: &GpuContext, bytes: &[u8]) -> Placed {
         if let Some(kept) = self.kept.get_mut(bytes) {
             kept.last_used = self.frame;
@@ -70,7 +70,7 @@ impl Uniforms {
         placed
     }
 
-    /// A place that holds nothing.
+    /// An unused place.
     fn place(&mut self, gpu: &GpuContext, room: u64) -> (wgpu::Buffer, u32) {
         if let Some(place) = self.free.get_mut(&room).and_then(Vec::pop) {
             return place;

@@ -1,4 +1,4 @@
-//! Structs that host and shaders share: each knows its layout, and a test compares that with naga's of its WGSL twin.
+//! Structs that host and shaders share. Each knows its layout; a test compares it with naga's layout of the WGSL twin.
 
 /// A struct's WGSL name, size in bytes, and (field, offset) pairs.
 pub type Layout = (&'static str, usize, &'static [(&'static str, usize)]);

@@ -1,14 +1,14 @@
-//! What a pass is, what flows between passes, and which of them a frame needs. Generic: it knows nothing of water, and calls nothing
-//! of wgpu.
+//! Passes, the slots that carry data between them, and the planner that picks the passes a frame needs. Generic: nothing here is about
+//! water, and nothing calls wgpu.
 //!
-//! - [`slot`]: what flows between passes: a buffer or textures, with what it holds and how large it is;
+//! - [`slot`]: what flows between passes: a buffer or textures, with content, unit and size;
 //! - [`pass`]: a pass: what it reads and writes, when it is wanted, its steps;
-//! - [`scope`]: how often a pass runs in a frame, and what one of its runs is told;
-//! - [`plan`]: passes + what is awaited + what is there already → the shortest list of passes, with a reason for each that is in or
+//! - [`scope`]: how often a pass runs in a frame, and the parameters of one run;
+//! - [`plan`]: passes + requested slots + available slots → the shortest list of passes, with a reason for each pass that is in or
 //!   out, and the memory they take;
 //! - [`layout`]: structs that host and shaders share.
 //!
-//! A program that uses the graph says what its passes decide by ([`Program`]).
+//! A program that uses the graph supplies the facts that its passes decide by ([`Program`]).
 
 pub mod layout;
 pub mod pass;

@@ -1,4 +1,4 @@
-//! What a pass is.
+//! Description of a pass: its slots, its condition, and its dispatches and draws.
 
 use std::fmt;
 
@@ -6,11 +6,11 @@ use super::Layout;
 use super::scope::{Program, Steps};
 use super::slot::SlotDesc;
 
-/// How many workgroups a dispatch runs.
+/// The number of workgroups of a dispatch.
 pub enum Groups<P: Program> {
-    /// As many as this.
+    /// A fixed number along each axis.
     Direct([u32; 3]),
-    /// As many as the three words of this queue from word number .1 on say.
+    /// Read on the GPU: three words of this queue, starting at word number .1.
     Queue(&'static SlotDesc<P>, u32),
 }
 
@@ -28,9 +28,9 @@ pub struct Color<P: Program> {
     pub slot: &'static SlotDesc<P>,
     /// Which of its layers.
     pub layer: u32,
-    /// What it is cleared to; `None`: what is there stays.
+    /// Clear value; `None`: the old content stays.
     pub clear: Option<[f64; 4]>,
-    /// How fragments join what is there; `None`: they replace it.
+    /// How fragments are blended with the old content; `None`: they replace it.
     pub blend: Option<wgpu::BlendState>,
 }
 
@@ -38,15 +38,15 @@ pub struct Color<P: Program> {
 pub struct Depth<P: Program> {
     /// The slot.
     pub slot: &'static SlotDesc<P>,
-    /// What the depth is cleared to; `None`: what is there stays.
+    /// Clear value of the depth; `None`: the old content stays.
     pub clear: Option<f32>,
-    /// Which fragment stays.
+    /// Depth test: which fragments pass.
     pub compare: wgpu::CompareFunction,
-    /// Whether the depth of a fragment that stays is written.
+    /// Whether the depth of a fragment that passes is written.
     pub writes: bool,
     /// The stencil test; the reference value is 0.
     pub stencil: wgpu::StencilState,
-    /// What the stencil is cleared to; `None`: what is there stays.
+    /// Clear value of the stencil; `None`: the old content stays.
     pub stencil_clear: Option<u32>,
 }
 
@@ -60,13 +60,13 @@ pub struct Draw<P: Program> {
     pub instances: u32,
     /// Triangles, lines or points.
     pub topology: wgpu::PrimitiveTopology,
-    /// Which faces are left out; front faces are counter-clockwise.
+    /// Which faces are culled; front faces are counter-clockwise.
     pub cull: Option<wgpu::Face>,
-    /// Textures that are drawn into, in the order of the fragment's outputs.
+    /// Render targets, in the order of the fragment's outputs.
     pub colors: Vec<Color<P>>,
     /// Depth and stencil.
     pub depth: Option<Depth<P>>,
-    /// Texels from the upper left corner that are drawn into; `None`: all.
+    /// Width and height of the viewport, from the upper left corner; `None`: the whole target.
     pub viewport: Option<[u32; 2]>,
 }
 
@@ -78,7 +78,7 @@ pub enum Work<P: Program> {
     Draw(Draw<P>),
 }
 
-/// A texture variable of the shader that is bound to one layer of a slot, under a name of its own.
+/// A texture variable of the shader that is bound to one layer of a slot and need not have the slot's name.
 pub struct View<P: Program> {
     /// Name of the variable.
     pub variable: &'static str,
@@ -96,7 +96,7 @@ pub struct Step<P: Program> {
     pub work: Work<P>,
     /// Bytes of the uniform variables, by name.
     pub uniforms: Vec<(&'static str, Vec<u8>)>,
-    /// Texture variables that are not called like their slots, or are one layer of them.
+    /// Texture variables whose names differ from their slots', or that are one layer of a slot.
     pub views: Vec<View<P>>,
 }
 
@@ -116,36 +116,36 @@ impl<P: Program> Step<P> {
     }
 }
 
-/// A pass: everything that planner and executor need to know of it.
+/// A pass: everything that the planner and the executor need.
 pub struct PassDesc<P: Program> {
     /// Its name.
     pub name: &'static str,
     /// Its shader, a path below `shaders/`.
     pub shader: &'static str,
-    /// Slots it cannot do without.
+    /// Slots it needs.
     pub reads: &'static [&'static SlotDesc<P>],
-    /// Slots it takes where they are there.
+    /// Slots it reads if they exist.
     pub reads_if_present: &'static [&'static SlotDesc<P>],
     /// Slots it fills.
     pub writes: &'static [&'static SlotDesc<P>],
-    /// Uniform variables that its steps bring along: name, and layout of the struct.
+    /// Uniform variables that its steps supply: name, and layout of the struct.
     pub uniforms: &'static [(&'static str, Layout)],
-    /// Why it is in (`Ok`) or out (`Err`), as a sentence.
+    /// The reason why it runs (`Ok`) or not (`Err`), as a sentence.
     pub wanted: fn(&P::Facts) -> Result<String, String>,
     /// Its scope, and its dispatches and draws for one run.
     pub steps: Steps<P>,
-    /// Units of work of one run: rays through waves, texels, pixels, whatever its time grows with.
+    /// Units of work of one run, in proportion to its time: rays through waves, texels, pixels.
     pub work: fn(&P::Facts) -> f64,
 }
 
 impl<P: Program> PassDesc<P> {
-    /// All slots it touches.
+    /// All slots it reads or writes.
     pub fn slots(&self) -> impl Iterator<Item = &'static SlotDesc<P>> + use<P> {
         let reads = self.reads.iter().chain(self.reads_if_present);
         reads.chain(self.writes).copied()
     }
 
-    /// Whether it touches a slot.
+    /// Whether it reads or writes a slot.
     pub fn touches(&self, slot: &SlotDesc<P>) -> bool {
         self.slots().any(|own| own == slot)
     }

@@ -1,8 +1,8 @@
-//! The planner: a list of passes, what is awaited and what is there already become the shortest list of passes, with a reason for
-//! each that is in or out, and the memory they take.
+//! The planner: picks the shortest list of passes that fills the requested slots, with a reason for each pass that is in or out, and the
+//! memory they take.
 //!
-//! A pure function without GPU. The list is walked backwards from what is awaited; a pass stays if something awaited is written by it
-//! and it is wanted. What is kept from before counts as there, so a cache hit needs no code of its own.
+//! A pure function without GPU. It walks the list backwards from the requested slots and keeps a pass if the pass is wanted and writes a
+//! slot that is still needed. Cached slots count as available, so a cache hit needs no extra code.
 
 use std::collections::BTreeSet;
 
@@ -15,13 +15,13 @@ use super::slot::{Origin, SlotDesc};
 pub struct Planned<P: Program> {
     /// Passes that run, with the reason for each.
     pub passes: Vec<(&'static PassDesc<P>, String)>,
-    /// Passes that do not, with the reason for each.
+    /// Passes that do not run, with the reason for each.
     pub absent: Vec<(&'static PassDesc<P>, String)>,
-    /// What they share, in the order of the first use.
+    /// Slots of these passes, in the order of first use.
     pub slots: Vec<PlannedSlot<P>>,
-    /// Bytes of the buffers that the slots share. No two slots of one are alive at the same time.
+    /// Bytes of the buffers that the slots share. Slots in one buffer are never alive at the same time.
     pub buffers: Vec<u64>,
-    /// Most bytes of textures that are alive at once.
+    /// Largest total of textures that are alive at once, bytes.
     pub texture_bytes: u64,
 }
 
@@ -36,7 +36,7 @@ pub enum Allocation {
     Kept,
 }
 
-/// A slot that is held.
+/// A slot that the frame holds.
 #[derive(Debug)]
 pub struct PlannedSlot<P: Program> {
     /// The slot.
@@ -49,13 +49,13 @@ pub struct PlannedSlot<P: Program> {
     pub life: [Phase; 2],
 }
 
-/// A part of a frame. Slots that live in different phases share memory; within a phase passes run in loops, so all its slots live
-/// through it.
+/// A part of a frame. Slots that live in different phases share memory. Within a phase passes run in loops, so each of its slots lives
+/// for the whole phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Phase {
-    /// What is done once, and level maps.
+    /// Passes that run once per frame, and level maps.
     Preparation,
-    /// Beam sets, finely and coarsely, and the estimate of the error.
+    /// Beam sets at full and at coarse resolution, and the estimate of the error.
     Light,
     /// Bands of the picture.
     Picture,
@@ -77,7 +77,7 @@ impl Phase {
 /// Why there is no plan.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlanError {
-    /// A pass needs what no pass before it writes: a defect of the list.
+    /// A pass reads a slot that no earlier pass writes: a defect of the list.
     #[error("pass `{pass}` reads `{slot}`, which nothing before it writes")]
     NothingWrites {
         /// The pass.
@@ -99,7 +99,7 @@ impl<P: Program> Planned<P> {
         all.filter(|pass| pass.steps.scope() == scope).collect()
     }
 
-    /// The largest of the slots that share a buffer; of equal ones the first.
+    /// The largest of the slots that share a buffer; the first of them if several are equal.
     pub fn owner(&self, buffer: usize) -> Option<&'static SlotDesc<P>> {
         let all = self.slots.iter();
         let own = all.filter(|slot| slot.allocation == Allocation::Buffer(buffer));
@@ -107,17 +107,17 @@ impl<P: Program> Planned<P> {
             .map(|planned| planned.slot)
     }
 
-    /// A slot that is held.
+    /// The planned slot, if the frame holds it.
     pub fn slot(&self, slot: &SlotDesc<P>) -> Option<&PlannedSlot<P>> {
         self.slots.iter().find(|planned| planned.slot == slot)
     }
 }
 
-/// Plans.
+/// Plans a frame.
 ///
-/// - `passes`: all that may run, in order;
-/// - `awaited`: slots that hold what is asked for;
-/// - `there`: slots whose content is kept from before;
+/// - `passes`: all passes that may run, in order;
+/// - `awaited`: the requested slots;
+/// - `available`: slots whose content is cached from an earlier frame;
 /// - `kept_bytes`: size of a slot that a cache keeps.
 ///
 /// # Errors
@@ -126,13 +126,13 @@ pub fn plan<P: Program>(
     passes: &[&'static PassDesc<P>],
     facts: &P::Facts,
     awaited: &BTreeSet<&'static SlotDesc<P>>,
-    there: &BTreeSet<&'static SlotDesc<P>>,
+    available: &BTreeSet<&'static SlotDesc<P>>,
     kept_bytes: impl Fn(&SlotDesc<P>) -> u64,
 ) -> Result<Planned<P>, PlanError> {
     let mut awaiting = awaited.clone();
     let (mut kept, mut absent) = (Vec::new(), Vec::new());
     for pass in passes.iter().copied().rev() {
-        match verdict(pass, facts, &awaiting, there) {
+        match verdict(pass, facts, &awaiting, available) {
             Ok(reason) => {
                 awaiting.extend(pass.reads.iter().chain(pass.reads_if_present));
                 kept.push((pass, reason));
@@ -142,7 +142,7 @@ pub fn plan<P: Program>(
     }
     kept.reverse();
     absent.reverse();
-    check_order(&kept, there)?;
+    check_order(&kept, available)?;
     let mut planned = Planned {
         slots: held(&kept, facts, kept_bytes),
         passes: kept,
@@ -171,7 +171,7 @@ fn verdict<P: Program>(
     pass: &'static PassDesc<P>,
     facts: &P::Facts,
     awaiting: &BTreeSet<&'static SlotDesc<P>>,
-    there: &BTreeSet<&'static SlotDesc<P>>,
+    available: &BTreeSet<&'static SlotDesc<P>>,
 ) -> Result<String, String> {
     let reason = (pass.wanted)(facts)?;
     let names = |slots: &[&'static SlotDesc<P>]| {
@@ -180,7 +180,7 @@ fn verdict<P: Program>(
     };
     let (mut missing, mut kept) = (Vec::new(), Vec::new());
     for slot in pass.writes {
-        if there.contains(slot) {
+        if available.contains(slot) {
             kept.push(*slot);
         } else {
             missing.push(*slot);
@@ -190,24 +190,24 @@ fn verdict<P: Program>(
         return Ok(reason);
     }
     if kept.iter().any(|slot| awaiting.contains(slot)) {
-        return Err(format!("what it writes ({}) is kept", names(&kept)));
+        return Err(format!("its output ({}) is cached", names(&kept)));
     }
     Err(format!(
-        "nothing in this frame reads what it writes ({})",
+        "nothing in this frame reads its output ({})",
         names(pass.writes)
     ))
 }
 
-/// Every slot that is read must come from the host, be kept, or be written before.
+/// Checks that every slot a pass reads comes from the host, is cached, or is written by an earlier pass.
 fn check_order<P: Program>(
     kept: &[(&'static PassDesc<P>, String)],
-    there: &BTreeSet<&'static SlotDesc<P>>,
+    available: &BTreeSet<&'static SlotDesc<P>>,
 ) -> Result<(), PlanError> {
-    let mut there = there.clone();
+    let mut available = available.clone();
     for (pass, _) in kept {
         let missing = pass.reads.iter().find(|slot| {
             let from_host = matches!(slot.origin, Origin::Host | Origin::HostCached);
-            !from_host && !there.contains(*slot)
+            !from_host && !available.contains(*slot)
         });
         if let Some(missing) = missing {
             return Err(PlanError::NothingWrites {
@@ -215,18 +215,18 @@ fn check_order<P: Program>(
                 slot: missing.name,
             });
         }
-        there.extend(pass.writes);
+        available.extend(pass.writes);
     }
     Ok(())
 }
 
-/// The slots that passes touch, with their sizes and lives.
+/// The slots that passes read or write, with their sizes and lifetimes.
 fn held<P: Program>(
     kept: &[(&'static PassDesc<P>, String)],
     facts: &P::Facts,
     kept_bytes: impl Fn(&SlotDesc<P>) -> u64,
 ) -> Vec<PlannedSlot<P>> {
-    // Passes that follow a beam set run again for each band where other passes need the set there.
+    // Where a pass runs per band and beam set, the passes that trace the beam set run again for each band.
     let again_in_picture = kept
         .iter()
         .any(|(pass, _)| pass.steps.scope() == Scope::BandBeamSet);
@@ -267,8 +267,8 @@ fn held<P: Program>(
     slots
 }
 
-/// Gives every slot that lies in a buffer one that no other slot alive at the same time lies in: the largest first, each into the
-/// first buffer where it fits in time.
+/// Assigns slots to buffers so that slots alive at the same time never share one: the largest slot first, each into the first buffer
+/// whose slots all live at other times.
 fn share_buffers<P: Program>(planned: &mut Planned<P>) {
     let mut order: Vec<usize> = (0..planned.slots.len())
         .filter(|&index| matches!(planned.slots[index].allocation, Allocation::Buffer(_)))
@@ -283,7 +283,7 @@ fn share_buffers<P: Program>(planned: &mut Planned<P>) {
                 .all(|life| life[1] < slot.life[0] || slot.life[1] < life[0])
         };
         let number = lives.iter().position(is_free).unwrap_or_else(|| {
-            // Those that come later are no larger.
+            // Later slots are no larger, so this size fits them too.
             lives.push(Vec::new());
             planned.buffers.push(slot.bytes.next_multiple_of(4));
             lives.len() - 1

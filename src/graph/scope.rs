@@ -1,16 +1,16 @@
-//! How often a pass runs in a frame, and what one of its runs is told.
+//! How often a pass runs in a frame, and the parameters of one run.
 //!
-//! The type of a pass's steps says its scope, so that steps for another scope cannot be written; asking for them is an error.
+//! The type of a pass's steps fixes its scope, so a pass cannot have steps for another scope; requesting such steps is an error.
 
 use std::fmt;
 
 use super::pass::Step;
 
-/// What a program brings along.
+/// The types that a program supplies.
 pub trait Program: Sized + 'static {
-    /// The figures that passes decide by.
+    /// The facts that passes decide by.
     type Facts;
-    /// What a run of a pass that builds a level map is told.
+    /// Parameters of a run that builds a level map.
     type LevelMap;
 }
 
@@ -19,41 +19,41 @@ pub trait Program: Sized + 'static {
 pub enum Scope {
     /// Once, before any light.
     Frame,
-    /// Once per level map that is not kept from before.
+    /// Once per level map that is not cached.
     LevelMap,
-    /// Once per beam set, and once more for each that the estimate of the error follows coarsely.
+    /// Once per beam set, and once more for each beam set that the error estimate traces with fewer cells.
     BeamSet,
-    /// Once per beam set, but not for those that are followed coarsely: what makes the frame's maps, or only counts.
+    /// Once per beam set, but not for the coarse ones: passes that make the frame's maps, or that only count.
     FineBeamSet,
-    /// Once per beam set that is followed coarsely.
+    /// Once per coarse beam set.
     CoarseBeamSet,
-    /// Once, when all beam sets are done, finely and coarsely.
+    /// Once, after all fine and coarse beam sets.
     Estimate,
-    /// Once per band of the picture (or of a map's texels) and round of its rays.
+    /// Once per band of the picture (or of a map's texels) and sample of its pixels.
     Band,
-    /// Once per band, round and beam set.
+    /// Once per band, sample and beam set.
     BandBeamSet,
 }
 
-/// Which beam set a run follows.
+/// Which beam set a run traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BeamSetRun {
     /// Its number.
     pub index: usize,
-    /// With 64-bit flux sums, after narrow ones have wrapped.
+    /// Whether flux is summed in 64 bits; used where 32-bit sums would be too coarse or have wrapped.
     pub wide_sums: bool,
 }
 
-/// Which rows of the picture a run makes.
+/// Which rows of the picture a run renders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandRun {
     /// First row.
     pub first_row: u32,
     /// Number of rows.
     pub rows: u32,
-    /// Where in the pixel the rays go: away from its middle, in pixels.
+    /// Offset of the rays from the pixel's centre, pixels.
     pub offset: [f64; 2],
-    /// Samples that the picture already holds.
+    /// Number of samples that the picture already holds.
     pub sample_index: u32,
 }
 
@@ -85,7 +85,7 @@ impl<P: Program> Clone for Run<'_, P> {
 impl<P: Program> Copy for Run<'_, P> {}
 
 impl<P: Program> Run<'_, P> {
-    /// Whether a beam set with 64-bit flux sums is followed.
+    /// Whether the run traces a beam set with 64-bit flux sums.
     pub fn has_wide_sums(&self) -> bool {
         match self {
             Self::BeamSet(set) | Self::CoarseBeamSet(set, _) | Self::BandBeamSet(_, set) => {
@@ -100,13 +100,17 @@ impl<P: Program> Run<'_, P> {
             Self::Frame => "a frame",
             Self::LevelMap(_) => "a level map",
             Self::BeamSet(_) => "a beam set",
-            Self::CoarseBeamSet(..) => "a beam set that is followed coarsely",
+            Self::CoarseBeamSet(..) => "a coarse beam set",
             Self::Estimate => "the estimate",
             Self::Band(_) => "a band",
             Self::BandBeamSet(..) => "a band and beam set",
         }
     }
 }
+
+/// The steps of a coarse beam set.
+pub type CoarseSteps<P> =
+    fn(&<P as Program>::Facts, BeamSetRun, &<P as Program>::Facts) -> Vec<Step<P>>;
 
 /// The steps of one run, by scope.
 pub enum Steps<P: Program> {
@@ -119,7 +123,7 @@ pub enum Steps<P: Program> {
     /// See [`Scope::FineBeamSet`].
     FineBeamSet(fn(&P::Facts, BeamSetRun) -> Vec<Step<P>>),
     /// See [`Scope::CoarseBeamSet`]: the coarse facts, the set, and the facts whose maps it is compared with.
-    CoarseBeamSet(fn(&P::Facts, BeamSetRun, &P::Facts) -> Vec<Step<P>>),
+    CoarseBeamSet(CoarseSteps<P>),
     /// See [`Scope::Estimate`].
     Estimate(fn(&P::Facts) -> Vec<Step<P>>),
     /// See [`Scope::Band`].
@@ -128,12 +132,12 @@ pub enum Steps<P: Program> {
     BandBeamSet(fn(&P::Facts, BandRun, BeamSetRun) -> Vec<Step<P>>),
 }
 
-/// A pass was asked for steps of another scope than its own.
+/// Steps of another scope than the pass's own were requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongScope {
     /// The pass's scope.
     pub scope: Scope,
-    /// What was to be run.
+    /// The run that was requested.
     pub run: &'static str,
 }
 

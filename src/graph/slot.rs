@@ -1,4 +1,4 @@
-//! What flows between passes.
+//! Slots: the buffers and textures that flow between passes.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -9,7 +9,7 @@ use super::scope::Program;
 /// Who fills a slot, and how long it lives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// Passes. It lives from the first that touches it to the last.
+    /// Passes. It lives from the first pass that uses it to the last.
     Passes,
     /// The host, before the frame.
     Host,
@@ -19,13 +19,13 @@ pub enum Origin {
     HostCached,
 }
 
-/// What a slot's content is before each beam set.
+/// How a slot is cleared before each beam set.
 pub enum Clear<P: Program> {
-    /// Whatever was there.
+    /// Not at all.
     Nothing,
-    /// Zeros in the first bytes: so many, with narrow (false) or wide (true) flux sums.
+    /// The first bytes become zero. The function gives their number for narrow (false) or wide (true) flux sums.
     Zero(fn(&P::Facts, bool) -> u64),
-    /// These words at the beginning, such as the head of an empty queue.
+    /// The first words become these, such as the head of an empty queue.
     Head(&'static [u32]),
 }
 
@@ -37,7 +37,7 @@ pub struct Texture<P: Program> {
     pub dimension: wgpu::TextureViewDimension,
     /// Width, height, and depth or layers, for a scene.
     pub extent: fn(&P::Facts) -> [u32; 3],
-    /// Besides being read by shaders: rendered to, or stored to.
+    /// Usage besides being read by shaders: rendered to, or stored to.
     pub usage: wgpu::TextureUsages,
 }
 
@@ -52,13 +52,14 @@ impl<P: Program> Texture<P> {
 
 /// What a slot is.
 pub enum Kind<P: Program> {
-    /// A buffer of so many bytes.
+    /// A buffer; the function gives its size in bytes.
     Buffer(fn(&P::Facts) -> u64),
     /// Textures.
     Texture(Texture<P>),
 }
 
-/// What passes share. A WGSL variable that binds it has its name. Slots are told apart by their names, which a test keeps apart.
+/// A buffer or texture that passes share. The WGSL variable that binds it has the same name. The name identifies a slot; a test checks
+/// that names are unique.
 pub struct SlotDesc<P: Program> {
     /// Name in WGSL and in plans.
     pub name: &'static str,
@@ -68,14 +69,14 @@ pub struct SlotDesc<P: Program> {
     pub origin: Origin,
     /// Buffer or textures, and their size.
     pub kind: Kind<P>,
-    /// What it holds before each beam set.
+    /// How it is cleared before each beam set.
     pub clear: Clear<P>,
     /// Layout of an element that is a struct.
     pub element: Option<Layout>,
 }
 
 impl<P: Program> SlotDesc<P> {
-    /// A buffer that passes fill, of so many bytes.
+    /// A buffer of `bytes` bytes that passes fill.
     pub const fn buffer(
         name: &'static str,
         holds: &'static str,
@@ -103,7 +104,7 @@ impl<P: Program> SlotDesc<P> {
         }
     }
 
-    /// Size for a scene, bytes. What is kept is sized by its cache.
+    /// Size for a scene, bytes. A cached slot is sized by its cache instead.
     pub fn bytes(&self, facts: &P::Facts) -> u64 {
         match &self.kind {
             Kind::Buffer(bytes) => bytes(facts),

@@ -1,4 +1,4 @@
-//! What a scene says of its method, checked against the methods there are.
+//! Validation of a scene's choice of method and dials against the list of methods.
 
 use std::sync::Arc;
 
@@ -16,8 +16,8 @@ use crate::scene::{
 /// Most findings about the dials of a method that are listed.
 const MOST_ISSUES: usize = 20;
 
-/// Validates a scene, its method included, and looks up the mesh of every object; the choice of the method is then in its shortest form, so
-/// that scenes that ask for the same have the same hash.
+/// Validates a scene, its method included, and looks up the mesh of every object. The choice of method is reduced to its shortest form, so
+/// that equivalent scenes have the same hash.
 ///
 /// # Errors
 /// The findings of [`scene::resolve`] and [`check`] together.
@@ -52,7 +52,7 @@ fn joined<T>(result: Result<T, SceneError>, more: Vec<Issue>) -> Result<T, Scene
     }
 }
 
-/// What is wrong with the method of `quality` and its dials, and with wishes that this method cannot meet.
+/// Faults of the method in `quality` and its dials, and requests that this method cannot meet.
 pub fn check(quality: &Quality) -> Vec<Issue> {
     let method = match named(&quality.method) {
         Ok(method) => method,
@@ -75,8 +75,8 @@ pub fn check(quality: &Quality) -> Vec<Issue> {
     issues
 }
 
-/// What this method does not have that is asked of it: dials that are not its own, and being told an error or a time. Another method
-/// may have them, so that sweeps over methods leave these settings out.
+/// Requests that this method does not support: dials of other methods, and `target_error` or `time_budget_ms`. Another method may support
+/// them, so sweeps over methods skip these settings.
 pub fn misfits(quality: &Quality) -> Vec<Issue> {
     let Ok(method) = named(&quality.method) else {
         return Vec::new();
@@ -96,7 +96,7 @@ pub fn misfits(quality: &Quality) -> Vec<Issue> {
     issues
 }
 
-/// The method that is chosen.
+/// The chosen method.
 fn named(choice: &MethodChoice) -> Result<&'static Method, Issue> {
     let Some(kind) = &choice.kind else {
         return Ok(ALL[0]);
@@ -123,7 +123,7 @@ fn no_dial(method: &Method, name: &str) -> Issue {
     let others: Vec<&str> = others.map(|other| other.name).collect();
     match (meant(name, &own), others.is_empty()) {
         (Some(meant), _) => detail.push_str(&format!("; did you mean `{meant}`?")),
-        (None, false) => detail.push_str(&format!("; {} has", one_of(&others))),
+        (None, false) => detail.push_str(&format!("; it belongs to {}", one_of(&others))),
         (None, true) => {}
     }
     let accepted = match own.as_slice() {
@@ -137,7 +137,7 @@ fn pointer_to(name: &str) -> String {
     format!("{METHOD}{}", member(name))
 }
 
-/// The same choice without what says the same as nothing: the name of the default method, and dials at their defaults.
+/// The same choice without redundant parts: the name of the default method, and dials at their defaults.
 pub fn shortest(choice: &MethodChoice) -> MethodChoice {
     let Ok(method) = named(choice) else {
         return choice.clone();
@@ -157,7 +157,7 @@ pub fn shortest(choice: &MethodChoice) -> MethodChoice {
     }
 }
 
-/// Some methods as what would be accepted.
+/// A list of methods, as the text about accepted values.
 pub(super) fn methods(methods: impl Iterator<Item = &'static Method>) -> String {
     let names: Vec<&str> = methods.map(|method| method.name).collect();
     match names.as_slice() {

@@ -1,4 +1,4 @@
-//! The methods for those who tell people of them: as the schema of `quality.method`, and as fields that flags and sweeps set.
+//! Descriptions of the methods for users: the schema of `quality.method`, and the fields that flags and sweeps set.
 
 use serde_json::Value;
 use utoipa::openapi::schema::AdditionalProperties;
@@ -9,7 +9,7 @@ use crate::scene::Dial;
 use crate::scene::dials::KIND;
 use crate::scene::overrides::{self, Field, METHOD};
 
-/// The schema of `quality.method`: a word, or an object per method.
+/// The schema of `quality.method`: a method's name, or an object per method.
 pub fn schema() -> Schema {
     let names = ALL.map(|method| method.name);
     let word = ObjectBuilder::new()
@@ -75,8 +75,8 @@ fn capitalised(text: &str) -> String {
     first.chain(letters).collect()
 }
 
-/// Every field of a scene that may be replaced from outside: [`overrides::fields`], and behind those of `quality` the dials of all
-/// methods. A dial that several methods have is there once.
+/// Every field of a scene that flags and sweeps may set: [`overrides::fields`], and after those of `quality` the dials of all methods. A
+/// dial that several methods have is listed once.
 pub fn fields() -> Vec<Field> {
     let (mut fields, outputs): (Vec<Field>, Vec<Field>) = overrides::fields()
         .into_iter()
@@ -109,18 +109,18 @@ pub fn fields() -> Vec<Field> {
     fields
 }
 
-/// A dial with the methods that have it; what they say of it is told apart where it differs.
+/// A dial with the methods that have it. Methods that document it differently are listed separately.
 fn field_of(dial: &Dial) -> Field {
-    let mut told: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut texts: Vec<(String, Vec<&str>)> = Vec::new();
     let mut words: Vec<String> = Vec::new();
     for method in ALL {
         let Some(own) = method.dial(dial.name) else {
             continue;
         };
         let text = own.documentation();
-        match told.iter_mut().find(|(known, _)| *known == text) {
+        match texts.iter_mut().find(|(known, _)| *known == text) {
             Some((_, methods)) => methods.push(method.name),
-            None => told.push((text, vec![method.name])),
+            None => texts.push((text, vec![method.name])),
         }
         for word in own.words() {
             if words.iter().all(|known| known != word) {
@@ -128,7 +128,7 @@ fn field_of(dial: &Dial) -> Field {
             }
         }
     }
-    let told: Vec<String> = told
+    let texts: Vec<String> = texts
         .into_iter()
         .map(|(text, methods)| match methods.as_slice() {
             [one] => format!("Method {one}: {text}"),
@@ -139,7 +139,7 @@ fn field_of(dial: &Dial) -> Field {
         name: dial.name.to_owned(),
         flag: dial.name.replace('_', "-"),
         pointer: format!("{METHOD}/{}", dial.name),
-        help: told.join(" "),
+        help: texts.join(" "),
         words,
         is_list: false,
     }

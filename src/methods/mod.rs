@@ -1,8 +1,8 @@
-//! The methods: one folder per published method and ours, each with a description, its passes and its shaders; one line each in
-//! [`ALL`]. Everything that has to know which methods there are walks that list: planner, schema, flags, sweeps, tests, README.
+//! The methods: one folder per method, published or ours, with its description, passes and shaders, and one line in [`ALL`]. Everything
+//! that needs the methods walks that list: planner, schema, flags, sweeps, tests, README.
 //!
-//! Beside the folders: `check` tells what is wrong with a scene's choice of a method, `describe` makes schema, flags and dials of sweeps from
-//! the list, `reference_planes` has the dial that methods which slice objects share.
+//! Beside the folders: `check` validates a scene's choice of a method; `describe` makes schema, flags and dials of sweeps from the list;
+//! `reference_planes` has the dial shared by methods that slice objects.
 //!
 //! A method reads shared slots (water surface, beams, receivers, points) and makes one product. How to add one:
 //! `docs/adding-a-method.md`.
@@ -36,35 +36,35 @@ list![level_map, planes, volumetric];
 
 /// A method.
 pub struct Method {
-    /// Its name in `quality.method`, in snake case; its folders have it too.
+    /// Its name in `quality.method`, in snake case; also the name of its folders.
     pub name: &'static str,
-    /// What it does, in one sentence, without a capital and a full stop.
+    /// What it does: one sentence without initial capital and full stop.
     pub summary: &'static str,
     /// Where it was published: author, year, chapter.
     pub paper: &'static str,
-    /// Dials that stand with its name in the object `quality.method`; other methods may have them too.
+    /// Its own dials, fields of the object `quality.method`; other methods may have them too.
     pub dials: &'static [&'static Dial],
     /// Fields of `quality`, shared by all methods, that trade its accuracy for time.
     pub shared_dials: &'static [&'static str],
     /// Its WGSL files, see [`crate::embed_shaders`].
     pub shaders: Embedded,
-    /// Its passes, in the order they run: those that follow light between [`BEFORE_METHOD`] and [`AFTER_MAPS`], those that work on
+    /// Its passes, in the order they run: passes that trace light between [`BEFORE_METHOD`] and [`AFTER_MAPS`], passes that work on
     /// points between [`AFTER_MAPS`] and [`PICTURE`].
     pub passes: &'static [&'static Pass],
-    /// The power of the cells' size with which its error is expected to fall where the light sheet does not fold; 0 where it does not
-    /// go to 0 with more cells.
+    /// Expected order of convergence: the power of the cell size with which its error falls where the light sheet does not fold; 0 if the
+    /// error does not go to 0 with more cells.
     pub expected_order: f64,
-    /// Whether `target_error` and `time_budget_ms` can choose its dials: their rungs were measured with it.
+    /// Whether `target_error` and `time_budget_ms` can choose its dials; the table of settings was measured with it.
     pub dials_can_be_chosen: bool,
-    /// What the stages need to know of it, for some dials.
+    /// Its properties for the stages, given the dials.
     pub facts: fn(&Quality) -> MethodFacts,
-    /// Whether it can make what a scene asks for, or a reason that a reader understands.
+    /// Whether it can render a scene; if not, a reason for the user.
     pub supports: fn(&SceneFacts) -> Result<(), String>,
-    /// What the conformance suite (`tests/gpu/conformance.rs`) holds it to.
+    /// Its requirements in the conformance suite (`tests/gpu/conformance.rs`).
     pub conformance: Conformance,
 }
 
-/// What the conformance suite holds a method to.
+/// Requirements of the conformance suite for a method.
 pub struct Conformance {
     /// Largest relative L1 error on the floor of `scenes/sine_pool.json` with 256 water cells.
     pub sine_pool_error_at_256: f64,
@@ -84,7 +84,7 @@ impl Method {
         self.dials.iter().copied().find(|dial| dial.name == name)
     }
 
-    /// What the stages need to know of it, with all dials as they are unless set.
+    /// Its properties for the stages, with all dials at their defaults.
     pub fn facts_of_default(&self) -> MethodFacts {
         (self.facts)(&Quality::default())
     }
@@ -106,7 +106,7 @@ impl Method {
     }
 }
 
-/// The method that `quality` names; the default where there is none of that name, which [`check`] refuses.
+/// The method that `quality` names. An unknown name gives the default method; [`check`] refuses such scenes.
 pub fn of(quality: &Quality) -> &'static Method {
     let kind = quality.method.kind.as_deref();
     let found = ALL
@@ -115,8 +115,7 @@ pub fn of(quality: &Quality) -> &'static Method {
     found.unwrap_or(ALL[0])
 }
 
-/// Every method, and of a method with dials of words a choice for each of their words: what tests and hard cases run that are about
-/// all methods.
+/// Every method; a method with word-valued dials appears once for each word. Tests and hard cases about all methods run these choices.
 pub fn variants() -> Vec<MethodChoice> {
     let mut all = Vec::new();
     for method in ALL {
@@ -154,10 +153,10 @@ pub fn all_passes() -> Vec<&'static Pass> {
     all
 }
 
-/// The facts of a scene that [`resolve`] has accepted; of its warnings only those about lights that are left out.
+/// The facts of a scene that [`resolve`] has accepted. Their only warnings are those about lights that are left out.
 ///
 /// # Errors
-/// Those of [`SceneFacts::of`], and a method that cannot make what the scene asks for.
+/// Those of [`SceneFacts::of`], and a method that cannot render the scene.
 pub fn facts(resolved: &ResolvedScene) -> Result<SceneFacts, SceneError> {
     supported(resolved, SceneFacts::of)
 }
@@ -175,7 +174,7 @@ fn supported(
     facts: impl Fn(&ResolvedScene, MethodFacts) -> Result<SceneFacts, SceneError>,
 ) -> Result<SceneFacts, SceneError> {
     let quality = &resolved.scene.quality;
-    // Scenes that were made in Rust may come here unchecked.
+    // Scenes constructed in Rust may arrive unchecked.
     let issues = check(quality);
     if !issues.is_empty() {
         return Err(SceneError { issues });
@@ -188,11 +187,10 @@ fn supported(
     }
 }
 
-/// Why the method of a scene cannot make what the scene asks for, in words that another choice of method or dials may answer; `None`
-/// where it can.
+/// Why the method of a scene cannot render it although another choice of method or dials might; `None` if it can.
 ///
 /// # Errors
-/// What is wrong with the scene whatever the method.
+/// Faults of the scene that do not depend on the method.
 pub fn reason_against(resolved: &ResolvedScene) -> Result<Option<String>, SceneError> {
     let quality = &resolved.scene.quality;
     let misfits = misfits(quality);

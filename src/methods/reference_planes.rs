@@ -1,4 +1,4 @@
-//! The dial that the methods which slice objects share.
+//! The dial shared by the methods that slice objects.
 
 use crate::scene::{Dial, DialKind};
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::Plan;
 
-/// Bytes in the largest unit that keeps them above one.
+/// Bytes as text, in the largest unit in which the value is at least one.
 pub fn human_bytes(bytes: u64) -> String {
     const UNITS: [&str; 4] = ["B", "KiB", "MiB", "GiB"];
     let mut value = bytes as f64;

@@ -1,7 +1,7 @@
-//! From facts and what is wanted to a plan: which passes run, why, and how much memory they take.
+//! Plans: from facts and the requested result to the passes that run, the reason for each, and the memory they take.
 //!
-//! The walk itself is the graph's ([`crate::graph::plan`]); this room says what a frame awaits, what is there already, and what the
-//! plan reads like.
+//! The graph walks the list of passes ([`crate::graph::plan`]). This room supplies the slots that a frame requests and those that are
+//! cached, and makes the report.
 
 pub mod explain;
 
@@ -26,12 +26,12 @@ use crate::stages::sums::ENERGY;
 use crate::stages::{Caustica, Pass, Slot};
 use crate::stats::{AbsentPass, ChosenDials, Warning};
 
-/// Bytes of the list that stands for what a scene has nothing of.
+/// Bytes of the list that is bound where a scene has no elements.
 pub const EMPTY_LIST_BYTES: u64 = 256;
 /// Bytes of the arguments of indirect dispatches.
 pub const INDIRECT_BYTES: u64 = 12;
 
-/// The shortest list of passes that makes what a scene asks for, and why.
+/// The shortest list of passes that renders a scene's output, and why each runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Plan {
     /// Passes in the order they run.
@@ -74,39 +74,39 @@ pub struct PlannedSlot {
     pub shares: Option<String>,
 }
 
-/// A plan as the executor runs it, with what it reads like.
+/// A plan as the executor runs it, with its report.
 #[derive(Debug)]
 pub struct FramePlan {
-    /// How much of the frame it makes.
+    /// The part of the frame that it renders.
     pub wanted: Wanted,
     /// Passes and slots.
     pub graph: Planned<Caustica>,
-    /// For people and programs.
+    /// The plan for users.
     pub report: Plan,
 }
 
-/// How much of a frame is wanted.
+/// The part of a frame that is requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    /// All that the output asks for.
+    /// The whole output.
     Frame,
-    /// Nothing but the light's own estimate of its error.
+    /// Only the maps' estimate of their own error: a trial render.
     Estimate,
-    /// Nothing but the level maps, for frames to come.
+    /// Only the level maps, for later frames.
     LevelMaps,
-    /// Nothing but the points: what the pixels see, or where the texels of the map lie.
+    /// Only the points: what the pixels see, or where the texels of the map lie.
     Points,
 }
 
 /// What is already on the GPU.
 pub trait Cached {
-    /// Whether this level map is there.
+    /// Whether this level map is cached.
     fn has_level_map(&self, key: &LevelMapKey) -> bool;
     /// Bytes that the level-map arena holds, or would hold for maps of `wanted_bytes` in all.
     fn arena_bytes(&self, wanted_bytes: u64) -> u64;
 }
 
-/// An empty GPU with room for level maps of `arena_bytes`: what a plan is made for where there is no device.
+/// An empty GPU with room for level maps of `arena_bytes`; for plans without a device.
 #[derive(Clone, Copy, Debug)]
 pub struct NothingCached {
     /// Size of the level-map arena.
@@ -127,7 +127,7 @@ impl Cached for NothingCached {
     }
 }
 
-/// A GPU that holds every level map: what a warm frame is planned for.
+/// A GPU that holds every level map; for plans of warm frames.
 #[derive(Clone, Copy, Debug)]
 pub struct WarmCache;
 
@@ -141,7 +141,7 @@ impl Cached for WarmCache {
     }
 }
 
-/// The slots that hold what is wanted of a scene's output. The energy account is awaited in its own right, wherever light is followed.
+/// The slots that hold the requested part of a scene's output. The energy account is always requested if light is traced.
 pub fn awaited(facts: &SceneFacts, wanted: Wanted) -> BTreeSet<&'static Slot> {
     match wanted {
         Wanted::LevelMaps => return BTreeSet::from([&LEVEL_MAPS]),
@@ -197,7 +197,7 @@ pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
 /// Plans `facts` from `passes`, usually those of the [method's pipeline](methods::Method::pipeline).
 ///
 /// # Errors
-/// When the list has a pass that reads what nothing before it writes.
+/// When a pass in the list reads a slot that no earlier pass writes.
 pub fn plan(
     passes: &[&'static Pass],
     facts: &SceneFacts,
@@ -210,7 +210,7 @@ pub fn plan(
         .iter()
         .filter(|key| !cached.has_level_map(key))
         .count();
-    let there = if missing == 0 {
+    let available = if missing == 0 {
         BTreeSet::from([&LEVEL_MAPS])
     } else {
         BTreeSet::new()
@@ -222,7 +222,13 @@ pub fn plan(
             slot.bytes(facts)
         }
     };
-    let graph = graph::plan(passes, facts, &awaited(facts, wanted), &there, kept_bytes)?;
+    let graph = graph::plan(
+        passes,
+        facts,
+        &awaited(facts, wanted),
+        &available,
+        kept_bytes,
+    )?;
     let report = report(&graph, facts, wanted, missing);
     Ok(FramePlan {
         wanted,
@@ -285,7 +291,7 @@ fn shares(graph: &Planned<Caustica>, held: &HeldSlot<Caustica>) -> Option<String
     (owner != held.slot).then(|| owner.name.to_owned())
 }
 
-/// What is held besides the slots.
+/// Memory held besides the slots.
 fn besides(graph: &Planned<Caustica>, facts: &SceneFacts, wanted: Wanted) -> Vec<PlannedSlot> {
     let readback = match wanted {
         Wanted::LevelMaps => 0,
@@ -296,7 +302,7 @@ fn besides(graph: &Planned<Caustica>, facts: &SceneFacts, wanted: Wanted) -> Vec
         (
             "readback",
             readback,
-            "the largest result on its way to the host, and an estimate's sums",
+            "the largest result copied to the host, and the sums of the error estimate",
         ),
         (
             "sundry",
@@ -325,7 +331,7 @@ pub fn queue_heads(graph: &Planned<Caustica>) -> Vec<u32> {
     heads.flatten().copied().collect()
 }
 
-/// Bytes of the estimate's sums, which wait for the host beside any other result.
+/// Bytes of the estimate's sums, which are held for the host beside any other result.
 pub fn differences_beside(facts: &SceneFacts) -> u64 {
     if facts.quality.estimate_error && !facts.lights.beam_sets.is_empty() {
         DIFFERENCES.bytes(facts)
@@ -334,7 +340,7 @@ pub fn differences_beside(facts: &SceneFacts) -> u64 {
     }
 }
 
-/// Bytes of the largest result that is copied to the host at once, and of what waits beside it.
+/// Bytes of the largest result that is copied to the host at once, and of the estimate's sums beside it.
 pub fn readback_bytes(facts: &SceneFacts) -> u64 {
     let beside = differences_beside(facts);
     beside
@@ -361,7 +367,7 @@ pub fn bytes_per_point(slot: &Slot) -> u64 {
     }
 }
 
-/// Work inside passes that a scene does not call for.
+/// Effects inside passes that a scene does not need.
 fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     let mut absent = Vec::new();
     let mut add = |name: &str, reason: &str| {
@@ -379,24 +385,24 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     if facts.channels() == 1 {
         add(
             "spectral_flux",
-            "all colour channels fade alike: one is carried for all",
+            "all colour channels have the same extinction: one is traced for all",
         );
     }
     if !facts.lights.sky.shines() {
-        add("sky", "no sky shines");
+        add("sky", "the scene has no sky with radiance");
     } else if facts.output.camera.is_none() && facts.output.sky_w_m2.iter().all(|&e| e == 0.0) {
         add("sky", "output.include_sky is false");
     }
-    if facts.output.asked_layers > facts.quality.layers {
+    if facts.output.requested_layers > facts.quality.layers {
         add(
             "layers",
-            "the output is a map of the floor: nobody looks at the objects' maps",
+            "the output is a map of the floor: the objects' maps are unused",
         );
     }
     if facts.quality.level_of_detail > 0.0 && facts.output.camera.is_none() {
         add(
             "level_of_detail",
-            "the output is an irradiance map, seen by no camera: every object gets quality.level_map_texels",
+            "the output is an irradiance map, which has no camera: every object gets quality.level_map_texels",
         );
     }
     absent

@@ -1,4 +1,4 @@
-//! What a frame holds on the GPU: its slots, and what the host puts into them.
+//! Memory of a frame on the GPU: its slots, and the data that the host uploads into them.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use crate::stages::receivers::{self, ALL_RECEIVERS, RECEIVERS, Receiver};
 use crate::stages::surface::WAVES;
 use crate::stages::{Pass, Slot};
 
-/// Names of the buffers beside the slots'.
+/// Names of the buffers that are no slots.
 const EMPTY_LIST: &str = "empty list";
 const QUEUE_HEADS: &str = "queue heads";
 const INDIRECT: &str = "indirect";
@@ -46,7 +46,7 @@ enum Held {
 }
 
 impl FrameSlots {
-    /// Buffer and bytes of a slot; lists that hold nothing in this scene are one zero element.
+    /// Buffer and bytes of a slot; a list without elements in this scene is one zero element.
     pub(super) fn buffer(&self, slot: &Slot) -> (&wgpu::Buffer, u64) {
         match self.held.get(slot) {
             Some(Held::Buffer { buffer, bytes }) => (buffer, *bytes),
@@ -62,7 +62,7 @@ impl FrameSlots {
         }
     }
 
-    /// What a variable of this name is bound to in a pass: the slot of that name which the pass declares.
+    /// The binding of a variable of this name in a pass: the slot of that name that the pass declares.
     pub(super) fn binding(&self, pass: &Pass, name: &str) -> Option<Binding<'_>> {
         let slot = pass.slots().find(|slot| slot.name == name)?;
         match self.held.get(slot) {
@@ -78,7 +78,7 @@ impl FrameSlots {
     pub(super) fn layer(&self, slot: &Slot, layer: u32) -> Result<wgpu::TextureView, GpuError> {
         let Some(Held::Texture { texture, .. }) = self.held.get(slot) else {
             return Err(GpuError::Validation(format!(
-                "{slot:?} is drawn into or seen, and the frame holds no texture of it"
+                "{slot:?} is a render target or is sampled, but the frame holds no texture of it"
             )));
         };
         Ok(texture.create_view(&wgpu::TextureViewDescriptor {
@@ -143,7 +143,7 @@ impl PlacedUniforms {
 }
 
 impl Renderer {
-    /// Lends the plan's buffers, makes its textures, and uploads what the host provides.
+    /// Takes the plan's buffers from the pool, makes its textures, and uploads the host's data.
     pub(super) fn prepare(
         &mut self,
         resolved: &ResolvedScene,
@@ -207,7 +207,7 @@ impl Renderer {
         Ok(slots)
     }
 
-    /// Takes the buffers of a frame back.
+    /// Returns the buffers of a frame to the pool.
     pub(super) fn give_back(&mut self, slots: FrameSlots) {
         for (label, buffer) in slots.shared {
             self.pool.give_back(label, buffer);
@@ -308,7 +308,7 @@ impl Renderer {
         });
     }
 
-    /// Sets the receivers of a beam set's light, for what is submitted from now on.
+    /// Uploads the receivers of a beam set's light; they apply to everything submitted from now on.
     pub(super) fn set_receivers(&self, facts: &SceneFacts, index: usize, slots: &FrameSlots) {
         if let Some((buffer, _)) = slots.held_buffer(&RECEIVERS) {
             let receivers = self.receivers(facts, facts.lights.beam_sets[index].light);

@@ -1,4 +1,4 @@
-//! From GPU buffers to layers and accounts.
+//! Converts results read from the GPU to layers, energy accounts and warnings.
 
 use std::collections::BTreeMap;
 
@@ -24,10 +24,10 @@ use crate::stats::{EnergyAccount, PlaneStats, Warning};
 /// Bytes of one light's energy account.
 pub(super) const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
 
-/// Closure up to which a method is said to conserve energy.
+/// Largest closure at which a method counts as conserving energy.
 const CLOSED: f64 = 1e-5;
 
-/// The accounts of all lights from the raw sums of their beam sets, and what is worth a warning.
+/// The accounts of all lights, from the raw sums of their beam sets, and the warnings that follow from them.
 pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Vec<Warning>) {
     let mut of_lights: Vec<Option<LightSums>> = vec![None; facts.lights.lit.len()];
     let of_sets = raw.chunks_exact(ENERGY_TERMS as usize);
@@ -40,14 +40,14 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
     for mut sums in of_lights.into_iter().flatten() {
         sums.account.closure = closure(&sums.account);
         warnings.extend(not_conserved(facts, &sums.account));
-        warnings.extend(torn(&sums));
+        warnings.extend(unresolved(&sums));
         warnings.extend(not_followed(&sums));
         accounts.push(sums.account);
     }
     (accounts, warnings)
 }
 
-/// What the beam sets of a light have summed up.
+/// Sums over the beam sets of a light.
 #[derive(Clone)]
 struct LightSums {
     account: EnergyAccount,
@@ -55,8 +55,8 @@ struct LightSums {
     unit: [f64; ENERGY_TERMS as usize],
     /// Each term that is the same in all channels, W.
     grey_w: [[f64; 3]; ENERGY_TERMS as usize],
-    /// Parts of beams that straddle receivers to the end.
-    torn: u64,
+    /// Number of unresolved pieces: parts of beams that straddle receivers after the last halving.
+    unresolved: u64,
 }
 
 impl LightSums {
@@ -68,7 +68,7 @@ impl LightSums {
             },
             unit: [0.0; ENERGY_TERMS as usize],
             grey_w: [[0.0; 3]; ENERGY_TERMS as usize],
-            torn: 0,
+            unresolved: 0,
         }
     }
 
@@ -108,10 +108,10 @@ impl LightSums {
                 *sum += w;
             }
         }
-        self.torn += terms[term::TORN_COUNT];
+        self.unresolved += terms[term::UNRESOLVED_COUNT];
     }
 
-    /// Share of the emitted flux that a term is, percent.
+    /// A term as a share of the emitted flux, percent.
     fn percent(&self, term: usize) -> f64 {
         if self.unit[term::EMITTED] > 0.0 {
             100.0 * self.unit[term] / self.unit[term::EMITTED]
@@ -121,7 +121,7 @@ impl LightSums {
     }
 }
 
-/// What took ways that are not followed, as far as it was counted.
+/// Warnings about light on paths that are not simulated.
 fn not_followed(sums: &LightSums) -> Vec<Warning> {
     let light = sums.account.light;
     let measured = |term: usize, warning: Warning| {
@@ -131,54 +131,61 @@ fn not_followed(sums: &LightSums) -> Vec<Warning> {
             ..warning
         })
     };
-    let turned = measured(term::TURNED, unfollowed::waves_shade_waves(light));
-    let again = measured(
-        term::AGAIN,
+    let facing_away = measured(term::FACING_AWAY, unfollowed::waves_shade_waves(light));
+    let leaving_again = measured(
+        term::LEAVING_AGAIN,
         Warning::new(
             "light_leaves_water_again",
             format!(
-                "{:.3} % of the flux of light {light} meets steep waves a second time on its way; it is followed as if it stayed under water",
-                sums.percent(term::AGAIN)
+                "{:.3} % of the flux of light {light} meets steep waves a second time; it is traced as if it stayed under water",
+                sums.percent(term::LEAVING_AGAIN)
             ),
         ),
     );
-    let bared = measured(
-        term::BARED,
+    let bared_floor = measured(
+        term::BARED_FLOOR,
         Warning::new(
             "waves_bare_floor",
             format!(
-                "{:.3} % of the flux of light {light} enters where troughs lie below the floor; it falls on the floor refracted, without a way through water",
-                sums.percent(term::BARED)
+                "{:.3} % of the flux of light {light} enters where troughs lie below the floor; it lands on the floor refracted, with a path length of 0 under water",
+                sums.percent(term::BARED_FLOOR)
             ),
         ),
     );
-    [turned, again, bared].into_iter().flatten().collect()
+    [facing_away, leaving_again, bared_floor]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
-/// A light whose flux sums were done again.
+/// The warning about a light whose flux was summed again.
 pub(super) fn widened(light: u32) -> Warning {
     Warning {
         pointer: Some(format!("/lights/{light}")),
         ..Warning::new(
             "sums_done_again",
             format!(
-                "the light of light {light} is so concentrated that 32-bit sums of its flux overflowed; it was followed again with 64-bit sums, which takes longer and loses nothing"
+                "light {light} is so concentrated that 32-bit sums of its flux overflowed; it was traced again with 64-bit sums, which takes longer and loses nothing"
             ),
         )
     }
 }
 
-/// Puts what was seen in a frame to what was known before it: a warning that only a measurement can make sure of stays where the frame
-/// has seen nothing of the kind, and gives way to that of the frame where it has looked.
-pub(super) fn join_warnings(known: &mut Vec<Warning>, seen: Vec<Warning>, has_looked: bool) {
-    if has_looked {
+/// Adds the warnings that a frame measured to those known before it. If the frame measured the light, the prediction that waves shade
+/// waves is dropped, because the measured warning replaces it or shows that there was none.
+pub(super) fn join_warnings(known: &mut Vec<Warning>, measured: Vec<Warning>, was_measured: bool) {
+    if was_measured {
         known.retain(|warning| warning.code != unfollowed::WAVES_SHADE_WAVES);
     }
-    known.extend(seen);
+    known.extend(measured);
 }
 
-/// Puts the flux concerned to warnings that were there before it was known.
-pub(super) fn tell_flux(warnings: &mut [Warning], facts: &SceneFacts, energy: &[EnergyAccount]) {
+/// Adds the measured flux to warnings that were found before rendering.
+pub(super) fn add_flux_to_warnings(
+    warnings: &mut [Warning],
+    facts: &SceneFacts,
+    energy: &[EnergyAccount],
+) {
     let sum_w = |of: &dyn Fn(&EnergyAccount) -> Option<[f64; 3]>| {
         let each = energy.iter().filter_map(of);
         each.fold([0.0; 3], |sum, flux_w| {
@@ -199,7 +206,7 @@ pub(super) fn tell_flux(warnings: &mut [Warning], facts: &SceneFacts, energy: &[
     }
 }
 
-/// What placing light by planes took, from the counts of each light and object.
+/// Statistics of reference planes, from the counts of each light and object.
 pub(super) fn planes(facts: &SceneFacts, counts: &[Vec<[u32; 4]>]) -> Vec<PlaneStats> {
     let cells = facts.quality.water_cells;
     let mut all = Vec::new();
@@ -223,7 +230,7 @@ pub(super) fn planes(facts: &SceneFacts, counts: &[Vec<[u32; 4]>]) -> Vec<PlaneS
     all
 }
 
-/// Where the method does not conserve energy: by how much what landed differs from what the rays took away.
+/// The warning that a method does not conserve energy: the difference between the landed flux and the flux that the rays carry.
 fn not_conserved(facts: &SceneFacts, account: &EnergyAccount) -> Option<Warning> {
     let lands_as_taken = facts.method.conserves_energy || facts.wet_objects().next().is_none();
     if lands_as_taken || account.closure <= CLOSED {
@@ -232,13 +239,13 @@ fn not_conserved(facts: &SceneFacts, account: &EnergyAccount) -> Option<Warning>
     let surplus_w: [f64; 3] =
         std::array::from_fn(|c| accounted_w(account, c) - account.emitted_w[c]);
     let mut message = format!(
-        "method {} does not conserve energy: what lies on the objects differs from what their rays took by {:.3} % of the flux of light {}",
+        "method {} does not conserve energy: the flux on the objects differs from the flux of their rays by {:.3} % of the flux of light {}",
         facts.method.name,
         100.0 * account.closure,
         account.light
     );
     if facts.method.has_scratch_map && facts.attenuates() {
-        message.push_str("; what was absorbed on the way to them is part of that");
+        message.push_str("; light absorbed along the path to them is part of that");
     }
     Some(Warning {
         flux_w: Some(surplus_w),
@@ -246,31 +253,31 @@ fn not_conserved(facts: &SceneFacts, account: &EnergyAccount) -> Option<Warning>
     })
 }
 
-/// What beams that straddle receivers to the end have come to.
-fn torn(sums: &LightSums) -> Option<Warning> {
-    if sums.torn == 0 {
+/// The warning about unresolved pieces.
+fn unresolved(sums: &LightSums) -> Option<Warning> {
+    if sums.unresolved == 0 {
         return None;
     }
     let light = sums.account.light;
     let mut message = format!(
-        "{} parts of beams of light {light} with {:.3} % of its flux still straddle receivers after quality.split_levels halvings; each corner took a third",
-        sums.torn,
-        sums.percent(term::TORN),
+        "{} pieces of beams of light {light} with {:.3} % of its flux still straddle receivers after quality.split_levels halvings; the receiver at each corner gets a third of the piece",
+        sums.unresolved,
+        sums.percent(term::UNRESOLVED),
     );
     if sums.unit[term::CUT] > 0.0 {
         let cut = format!(
-            "; {:.3} % were halved less often, because so many straddle that the queue was full: fewer quality.split_levels with more quality.water_cells do the same",
+            "; {:.3} % of the flux was halved fewer times, because the queue was full: fewer quality.split_levels with more quality.water_cells have the same effect",
             sums.percent(term::CUT)
         );
         message.push_str(&cut);
     }
     Some(Warning {
-        flux_w: Some(sums.grey_w[term::TORN]),
-        ..Warning::new("beams_torn", message)
+        flux_w: Some(sums.grey_w[term::UNRESOLVED]),
+        ..Warning::new("beams_unresolved", message)
     })
 }
 
-/// Flux of a light of unit power that is in no term of its raw account; the largest of the channels.
+/// Flux of a light of unit power that is missing in its raw account; the largest of the channels.
 pub(super) fn missing_flux(facts: &SceneFacts, index: usize, terms: &[u64]) -> f64 {
     let grey =
         terms[term::EMITTED] as f64 - terms[term::REFLECTED] as f64 - terms[term::MISSED] as f64;
@@ -285,12 +292,12 @@ pub(super) fn missing_flux(facts: &SceneFacts, index: usize, terms: &[u64]) -> f
     missing / light::energy_scale(facts, index)
 }
 
-/// Whether the account of a light says that its narrow sums wrapped.
+/// Whether the account of a light shows that its narrow sums wrapped.
 pub(super) fn has_wrapped(facts: &SceneFacts, index: usize, account: &[u64]) -> bool {
     light::has_wrapped(facts, index, missing_flux(facts, index, account))
 }
 
-/// All terms of a channel but what was emitted, W.
+/// Sum of all terms of a channel except the emitted flux, W.
 fn accounted_w(account: &EnergyAccount, c: usize) -> f64 {
     account.landed_w[c]
         + account.absorbed_w[c]
@@ -307,7 +314,7 @@ fn closure(account: &EnergyAccount) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The layers of a view (or a map that is made at points), filled band by band.
+/// The layers of a view (or of a map computed at points), filled band by band.
 pub(super) struct PointLayers<'a> {
     facts: &'a SceneFacts,
     width: u32,
@@ -410,12 +417,12 @@ impl<'a> PointLayers<'a> {
         let outside = of_pixels(
             self.outside_map,
             "pixels_outside_map",
-            "see the floor beside its irradiance map; they repeat its edge",
+            "see the floor outside its irradiance map; they repeat the map's edge",
         );
         let unfinished = of_pixels(
             self.unfinished,
             "pixels_along_water",
-            "look so flatly along the waves that their rays' way to the water is not found to its end; they show what is where the search ended",
+            "look along the waves at such a flat angle that the search for their rays' hit on the water ran out of steps; they show the place where it ended",
         );
         let warnings = outside.into_iter().chain(unfinished).collect();
         Ok((self.layers, warnings))
@@ -465,12 +472,12 @@ pub(super) fn estimated_error(facts: &SceneFacts, differences: &[[f32; 4]]) -> O
     })
 }
 
-/// Which texels of the irradiance array make the requested map.
+/// The texels of the irradiance array that make up the requested map.
 pub(super) struct MapPlace {
     pub(super) width: u32,
     pub(super) height: u32,
     pub(super) first_texel: u64,
-    /// The level map whose normals turn flux through the map's plane into irradiance on the surface.
+    /// The level map whose normals convert flux through the map's plane to irradiance on the surface.
     pub(super) level_map: Option<LevelMapKey>,
     axis_in_mesh: DVec3,
 }
@@ -510,7 +517,8 @@ pub(super) fn map_of(facts: &SceneFacts) -> MapPlace {
     }
 }
 
-/// The finished map: on an object the cosine between surface and map axis comes in, on the floor the sky if asked for.
+/// The finished map: on an object the values are multiplied by the cosine between surface normal and map axis; on the floor the sky is
+/// added if requested.
 pub(super) fn finish_map(
     facts: &SceneFacts,
     map: &MapPlace,

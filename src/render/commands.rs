@@ -13,7 +13,7 @@ use crate::stages::sums::FLUX;
 use crate::stages::{Caustica, Groups, Pass, Run, Step, Work};
 use crate::stats::TimeStats;
 
-/// When the recording of a submission began.
+/// Start of the recording of a submission.
 #[derive(Clone, Copy)]
 pub(super) struct Recording {
     pub(super) at: Instant,
@@ -29,12 +29,12 @@ impl Recording {
     }
 }
 
-/// How many workgroups a dispatch runs.
+/// The number of workgroups of a dispatch.
 #[derive(Clone, Copy)]
 enum Launch {
-    /// These.
+    /// A fixed number along each axis.
     Groups([u32; 3]),
-    /// As many as the queue has said.
+    /// Read from the queue's head: an indirect dispatch.
     Counted,
 }
 
@@ -45,8 +45,8 @@ impl Renderer {
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
     }
 
-    /// Submits and waits; ms from then until all that was submitted so far is done, which `time_ms` gets besides those of the pieces
-    /// before it.
+    /// Submits and waits. Returns the time from the submission until all submitted work is done, ms, and adds it to `time_ms`, together
+    /// with the time of earlier pieces.
     pub(super) fn submit(
         &mut self,
         encoder: wgpu::CommandEncoder,
@@ -60,7 +60,7 @@ impl Renderer {
         Ok(ms)
     }
 
-    /// Submits and goes on; when it was sent. What waits next waits for it too.
+    /// Submits without waiting, and returns the time of the submission. The next wait includes this work.
     pub(super) fn send(
         &mut self,
         encoder: wgpu::CommandEncoder,
@@ -68,7 +68,7 @@ impl Renderer {
         time_ms: &mut TimeStats,
     ) -> Instant {
         let commands = encoder.finish();
-        // Passes that the host timed on the way, and pieces, are GPU time, not recording.
+        // Passes timed by the host meanwhile, and pieces, count as GPU time, not as recording.
         time_ms.gpu += std::mem::take(&mut self.cutting.unaccounted_ms);
         time_ms.upload += ms_since(started.at) - (time_ms.gpu - started.gpu_ms);
         let submitted = Instant::now();
@@ -76,7 +76,7 @@ impl Renderer {
         submitted
     }
 
-    /// Where the host times passes: submits what is recorded, waits, and starts over with an empty encoder.
+    /// If the host times passes: submits the recorded commands, waits, and starts a new encoder.
     pub(super) fn submit_if_timed(
         &mut self,
         pass: &Pass,
@@ -96,7 +96,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records passes one after the other; where the host times them, submits each.
+    /// Records passes one after the other; submits each if the host times them.
     pub(super) fn record_all(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -122,7 +122,7 @@ impl Renderer {
         run: Run<'_>,
         slots: &FrameSlots,
     ) -> Result<(), RenderError> {
-        // What has nothing to do with the sums is one kernel for both.
+        // Passes that do not touch the sums use one kernel for both widths.
         let wide_sums = run.has_wide_sums() && pass.touches(&FLUX);
         for step in steps_of(pass, facts, run)? {
             match &step.work {
@@ -187,7 +187,7 @@ impl Renderer {
         )
     }
 
-    /// Records a dispatch of a kernel, with more uniforms than those of the step.
+    /// Records a dispatch of a kernel; `more_uniforms` are added to those of the step.
     fn launch(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -332,7 +332,7 @@ pub(super) fn steps_of(
     })
 }
 
-/// The texture variables of a step that have names of their own.
+/// The texture views of a step's variables that are not named like their slots.
 fn views_of(step: &Step, slots: &FrameSlots) -> Vec<(&'static str, wgpu::TextureView)> {
     let views = step.views.iter();
     views
@@ -351,7 +351,7 @@ fn view<'a>(views: &'a [(&'static str, wgpu::TextureView)], name: &str) -> Optio
 fn targets_of(draw: &Draw<Caustica>, slots: &FrameSlots) -> Result<RasterTargets, GpuError> {
     let format = |slot| {
         slots.format(slot).ok_or_else(|| {
-            GpuError::Validation(format!("{slot:?} is drawn into and is no texture"))
+            GpuError::Validation(format!("{slot:?} is a render target but not a texture"))
         })
     };
     let mut colors = Vec::with_capacity(draw.colors.len());

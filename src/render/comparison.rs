@@ -1,5 +1,5 @@
-//! A frame's estimate of its own error: its lights done again coarsely, and compared with its maps; recorded while the GPU is at work on
-//! the last light where that can be, else light by light.
+//! A frame's estimate of its own error: its beam sets are traced again with fewer cells, and their maps compared with the frame's maps. If
+//! possible all of it is recorded while the GPU works on the last beam set, otherwise one beam set at a time.
 
 use std::time::Instant;
 
@@ -16,15 +16,15 @@ use crate::stages::sums::ENERGY;
 use crate::stages::{Pass, Run, coarse_irradiance, estimate, light};
 use crate::stats::TimeStats;
 
-/// Passes of a light that is done again coarsely: those that make its sums, those that take them, and those that compare.
+/// Passes of the comparison: those that make a coarse beam set's sums, those that read the sums, and those that compare.
 pub(super) type ComparisonPasses = [Vec<&'static Pass>; 3];
 
-/// The light done again coarsely, to be compared with the frame's maps.
+/// The coarse beam sets that are compared with the frame's maps.
 pub(super) struct Comparison {
     pub(super) coarse: SceneFacts,
-    /// Of each light, whether its sums are wide.
+    /// Whether each beam set's sums are wide.
     wide_sums: Vec<bool>,
-    /// The differences and the lights' accounts, on their way.
+    /// The submitted readbacks: the differences, and the account of each coarse beam set.
     pub(super) sent: Option<(Staged, Vec<Staged>)>,
 }
 
@@ -43,8 +43,8 @@ impl Comparison {
 }
 
 impl Renderer {
-    /// Records the lights done again coarsely, and their comparison with the maps, if that can be done ahead: the commands of each light,
-    /// whose receivers have to be set when they are submitted. The last ones also compare.
+    /// Records the coarse beam sets and their comparison with the maps, if that can be done ahead; else returns nothing. One command buffer
+    /// per beam set: the caller must set its receivers before submitting it. The last one also compares.
     pub(super) fn record_comparison(
         &mut self,
         comparison: &mut Comparison,
@@ -53,9 +53,8 @@ impl Renderer {
         slots: &FrameSlots,
     ) -> Result<Vec<wgpu::CommandBuffer>, RenderError> {
         let coarse = &comparison.coarse;
-        let in_turn: Vec<(usize, bool)> =
-            comparison.wide_sums.iter().copied().enumerate().collect();
-        for &(index, wide_sums) in &in_turn {
+        let sets: Vec<(usize, bool)> = comparison.wide_sums.iter().copied().enumerate().collect();
+        for &(index, wide_sums) in &sets {
             let set = BeamSetRun { index, wide_sums };
             let of_set = Run::BeamSet(set);
             let of_coarse = Run::CoarseBeamSet(set, facts);
@@ -71,7 +70,7 @@ impl Renderer {
         let passes = (light.as_slice(), coarse_light.as_slice());
         let mut nothing = TimeStats::default();
         let (mut recorded, mut accounts) = (Vec::new(), Vec::new());
-        for &(index, wide_sums) in &in_turn {
+        for &(index, wide_sums) in &sets {
             let mut encoder = self.encoder("light");
             slots.clear_for_beam_set(&mut encoder, coarse, wide_sums);
             accounts.push(self.record_coarse_light(
@@ -82,7 +81,7 @@ impl Renderer {
                 slots,
                 &mut nothing,
             )?);
-            if index + 1 == in_turn.len() {
+            if index + 1 == sets.len() {
                 let differences = self.record_estimate(&mut encoder, estimate, facts, slots)?;
                 comparison.sent = Some((differences, std::mem::take(&mut accounts)));
             }
@@ -91,8 +90,7 @@ impl Renderer {
         Ok(recorded)
     }
 
-    /// Sends the lights done again coarsely, and the comparison with the maps, to the GPU. Nobody waits: what the frame reads next is
-    /// what is waited for.
+    /// Submits the coarse beam sets and the comparison with the maps without waiting; the frame's next readback waits for them.
     pub(super) fn send_comparison(
         &mut self,
         comparison: &mut Comparison,
@@ -124,7 +122,7 @@ impl Renderer {
         let differences = self.record_estimate(&mut encoder, estimate, facts, slots)?;
         if by_host {
             let ms = self.submit(encoder, started, time_ms)?;
-            // Where it ran in pieces, those are noted already.
+            // If it ran in pieces, their time is noted already.
             self.timing.note(estimate::PASS.name, ms);
         } else {
             self.send(encoder, started, time_ms);
@@ -133,7 +131,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the comparison of the maps with those of the lights done coarsely, and the copy of what it gives.
+    /// Records the comparison of the maps with those of the coarse beam sets, and the readback of its result.
     fn record_estimate(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -149,8 +147,8 @@ impl Renderer {
         Ok(readback::stage(&self.gpu, encoder, differences, bytes))
     }
 
-    /// The sums of the differences, workgroup by workgroup. Where an account says that narrow sums of the coarse light wrapped, all of
-    /// it goes once more, with wide ones there.
+    /// Reads the sums of the differences, one per workgroup. If an account shows that a coarse beam set's narrow sums wrapped, everything
+    /// is submitted again with wide sums for that beam set.
     pub(super) fn read_comparison(
         &mut self,
         mut comparison: Comparison,
@@ -185,8 +183,8 @@ impl Renderer {
         }
     }
 
-    /// Records all coarse lights, each of them submitted when the next begins: an encoder that ends with the last, and their accounts,
-    /// which are there once that has run.
+    /// Records all coarse beam sets; each is submitted when the next one begins. Returns the encoder with the last one, and the accounts,
+    /// which can be read once that encoder has run.
     fn coarse_lights(
         &mut self,
         (coarse, fine): (&SceneFacts, &SceneFacts),
@@ -200,7 +198,7 @@ impl Renderer {
         let mut accounts = Vec::new();
         for (index, &wide_sums) in wide_sums.iter().enumerate() {
             check_cancelled(job.cancel)?;
-            // The next light's receivers take the place of this one's, so what reads those has to be on its way.
+            // The next beam set's receivers overwrite the current ones, so the commands that read these must be submitted first.
             if let Some(light) = recorded.take() {
                 self.gpu.queue.submit([light.finish()]);
             }
@@ -221,7 +219,7 @@ impl Renderer {
         Ok((encoder, accounts))
     }
 
-    /// Records a light done coarsely, all of it timed as one, and the copy of its account.
+    /// Records a coarse beam set, timed as one pass, and the readback of its account.
     fn record_coarse_light(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

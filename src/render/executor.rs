@@ -1,4 +1,5 @@
-//! The order of a frame: level maps, then beam set by beam set, then band by band. What a pass does is all in its description.
+//! Runs a frame in order: level maps, then one beam set after another, then one band after another. Each pass is executed from its
+//! description.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -27,7 +28,7 @@ use crate::stages::sums::ENERGY;
 use crate::stages::{Pass, Run, light};
 use crate::stats::{AccuracyStats, TimeStats};
 
-/// What a frame is made of: its scene's facts, its plan, and what nobody waits for any more.
+/// A frame to be run: its scene's facts, its plan, the level maps to build, and its cancellation.
 #[derive(Clone, Copy)]
 pub(super) struct Job<'a> {
     pub(super) facts: &'a SceneFacts,
@@ -116,7 +117,7 @@ impl Renderer {
         Ok(result)
     }
 
-    /// Runs what is done once, before any light.
+    /// Runs the passes that run once, before any light.
     fn run_once(
         &mut self,
         job: Job<'_>,
@@ -134,7 +135,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Follows all beam sets.
+    /// Traces all beam sets.
     fn run_beam_sets(
         &mut self,
         job: Job<'_>,
@@ -145,7 +146,7 @@ impl Renderer {
     ) -> Result<BeamSetSums, RenderError> {
         let facts = job.facts;
         let mut all = BeamSetSums::default();
-        // In the order of the list: passes that also follow coarse sets, and those that do not.
+        // In the order of the list: passes that also run for coarse sets, and passes that do not.
         let passes: Vec<&'static Pass> = (job.plan.graph.passes.iter())
             .map(|(pass, _)| *pass)
             .filter(|pass| matches!(pass.steps.scope(), Scope::BeamSet | Scope::FineBeamSet))
@@ -158,7 +159,7 @@ impl Renderer {
         for index in 0..sets {
             check_cancelled(job.cancel)?;
             let reruns = self.wide_sum_reruns;
-            // After the last one it is known what comes.
+            // Only the comparison follows the last beam set.
             let next = comparison.as_mut().filter(|_| index + 1 == sets);
             let next = next.map(|comparison| (comparison, comparing));
             let found = self.run_beam_set(facts, index, &passes, next, slots, time_ms)?;
@@ -174,9 +175,9 @@ impl Renderer {
         Ok(all)
     }
 
-    /// Follows one beam set and returns its raw account, and the counts of its planes where there are any; with narrow flux sums where
-    /// those are fine enough, and once more with wide ones if they wrapped. Sends `next` too if that can be recorded while the GPU is at
-    /// work on the set.
+    /// Traces one beam set and returns its raw account, and the counts of its planes if there are any. Flux sums are narrow where that is
+    /// fine enough; if they wrap, the set is traced again with wide ones. Also submits `next` if it can be recorded while the GPU works on
+    /// the set.
     fn run_beam_set(
         &mut self,
         facts: &SceneFacts,
@@ -234,7 +235,7 @@ impl Renderer {
                 }
                 continue;
             }
-            // Only sums that are known to be whole join the maps.
+            // Sums are added to the maps only after it is known that they did not wrap.
             if ahead.is_empty() {
                 let started = Recording::start(time_ms);
                 let mut encoder = self.encoder("light's maps");
@@ -257,8 +258,8 @@ impl Renderer {
         }
     }
 
-    /// Whether passes can be recorded before their turn: none of them is cut into pieces, or timed by the host, for which it would have
-    /// to run when it is recorded.
+    /// Whether passes can be recorded now and submitted later. That is impossible if one is cut into pieces or timed by the host, because
+    /// then it runs while it is recorded.
     pub(super) fn runs_in_one_submission(
         &self,
         passes: &[&'static Pass],
@@ -278,7 +279,7 @@ impl Renderer {
         Ok(true)
     }
 
-    /// Makes the picture band by band (or the map, where the method finds the light at points).
+    /// Renders the picture band by band (or the map, if the method computes irradiance at points).
     fn run_bands(
         &mut self,
         job: Job<'_>,
@@ -360,7 +361,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the passes of a band; those that work per beam set for each set, which is followed again where there are several.
+    /// Records the passes of a band. Passes per band and beam set run for each set; if there are several sets, each is traced again for
+    /// the band.
     fn record_band(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -382,7 +384,7 @@ impl Renderer {
                 continue;
             }
             if pass.name != per_set[0].name {
-                // Those of a set run together.
+                // The passes of a set are recorded together, with the first of them.
                 continue;
             }
             for index in 0..sets {
@@ -391,7 +393,7 @@ impl Renderer {
                     wide_sums: light::needs_wide_sums(facts, index),
                 };
                 if sets > 1 {
-                    // What is submitted so far reads the receivers of the set before.
+                    // The recorded commands read the receivers of the previous set, so they are submitted first.
                     let recorded = std::mem::replace(encoder, self.encoder("band"));
                     self.gpu.queue.submit([recorded.finish()]);
                     self.set_receivers(facts, index, slots);
@@ -504,7 +506,7 @@ impl Renderer {
     }
 }
 
-/// What a beam set's sums came to: its raw account, and the counts of its planes.
+/// Sums of a beam set: its raw account, and the counts of its planes.
 type RawSums = (Vec<u64>, Option<Vec<[u32; 4]>>);
 
 /// The sums of all beam sets, one behind the other.
@@ -512,21 +514,21 @@ type RawSums = (Vec<u64>, Option<Vec<[u32; 4]>>);
 struct BeamSetSums {
     accounts: Vec<u64>,
     plane_counts: Vec<Vec<[u32; 4]>>,
-    /// Warnings about sets that were followed again with wide sums.
+    /// Warnings about sets that were traced again with wide sums.
     widened: Vec<crate::stats::Warning>,
 }
 
-/// One round of rays through the pixels of a band.
+/// One sample of the pixels of a band: a ray through each pixel.
 struct Sample {
     offset: [f64; 2],
     index: u32,
-    /// Goes through the pixels' middles: the layers that are not averaged come from it.
+    /// Goes through the pixels' centres; the layers that are not averaged come from it.
     is_middle: bool,
     /// The radiance sum is complete after it.
     ends_radiance: bool,
 }
 
-/// The rounds of a view: an even grid in the pixel, and before it one through the middle where layers need it.
+/// The samples of a view: an even grid in the pixel, and before it one through the pixel's centre if layers need it.
 fn samples(facts: &SceneFacts) -> Vec<Sample> {
     let side = if facts.output.wants(LayerName::Radiance) {
         facts.quality.pixel_samples

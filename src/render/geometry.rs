@@ -1,5 +1,5 @@
-//! Meshes on the GPU: hierarchies and triangles of all meshes of a scene, one behind the other in one buffer, which is kept for the next
-//! scene with the same meshes.
+//! Meshes on the GPU: hierarchies and triangles of all meshes of a scene, one behind the other in one buffer. The buffer is kept for the
+//! next scene with the same meshes.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,22 +22,22 @@ pub(super) struct Place {
     pub(super) triangles: u32,
 }
 
-/// Most bytes that are kept for scenes with other meshes than those of the frame at work.
+/// Largest total of bytes that are kept for scenes with other meshes than those of the current frame.
 const KEPT_BYTES: u64 = 256 << 20;
 
 /// Geometry of the scenes that were rendered last.
 #[derive(Debug, Default)]
 pub(super) struct GeometryCache {
-    /// One for each set of meshes; what was used last comes last.
+    /// One entry for each set of meshes; the most recently used comes last.
     kept: Vec<Geometry>,
-    /// Whether the last one is the geometry of the frame at work.
+    /// Whether the last entry is the geometry of the current frame.
     in_use: bool,
     uploaded_bytes: u64,
 }
 
 impl GeometryCache {
-    /// Starts a frame that needs the geometry of `meshes`, if any. Of all other geometry that stays which was used last, as far as
-    /// `free_budget_bytes` go. Returns the bytes that stay so, and whether others had to go.
+    /// Starts a frame that needs the geometry of `meshes`, if any. Keeps the most recently used other geometry within `free_budget_bytes`
+    /// and drops the rest. Returns the bytes of other geometry that stay, and whether any was dropped.
     pub(super) fn begin_frame(
         &mut self,
         meshes: Option<&[Arc<Mesh>]>,
@@ -57,7 +57,7 @@ impl GeometryCache {
         (others_bytes, made_room)
     }
 
-    /// The geometry of `meshes`, for the frame at work; uploaded where it is not kept.
+    /// The geometry of `meshes` for the current frame; uploaded if it is not cached.
     pub(super) fn hold(&mut self, gpu: &GpuContext, meshes: &[Arc<Mesh>]) -> &Geometry {
         let kept = self.kept.iter().position(|kept| kept.is_of(meshes));
         let geometry = match kept {
@@ -73,12 +73,12 @@ impl GeometryCache {
         &self.kept[self.kept.len() - 1]
     }
 
-    /// The geometry of the frame at work, if it has any.
+    /// The geometry of the current frame, if it has any.
     pub(super) fn in_use(&self) -> Option<&Geometry> {
         self.kept.last().filter(|_| self.in_use)
     }
 
-    /// Drops all geometry with this mesh in it.
+    /// Drops all geometry that contains this mesh.
     pub(super) fn forget_mesh(&mut self, id: &str) {
         self.in_use = false;
         self.kept.retain(|kept| !kept.places.contains_key(id));
@@ -147,7 +147,7 @@ impl Geometry {
         Self { buffer, places }
     }
 
-    /// Whether all these meshes, and no others, are here.
+    /// Whether it contains exactly these meshes.
     fn is_of(&self, meshes: &[Arc<Mesh>]) -> bool {
         meshes.iter().all(|m| self.places.contains_key(&m.id))
             && self
@@ -206,7 +206,7 @@ fn hierarchy_over(objects: &[ObjectFacts]) -> Vec<HierarchyNode> {
     let boxes: Vec<[Vec3; 2]> = objects
         .iter()
         .map(|object| {
-            // They grow by a rounding error of f32, so that a flat mesh is not missed.
+            // Boxes grow by a rounding error of f32, so that rays do not miss a flat mesh.
             let grow =
                 glam::DVec3::splat(1e-6 * object.min.abs().max(object.max.abs()).max_element());
             [(object.min - grow).as_vec3(), (object.max + grow).as_vec3()]

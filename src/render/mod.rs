@@ -1,4 +1,4 @@
-//! Scene + Plan → Frame: owns the GPU context and the caches, and runs what the planner lists.
+//! Scene + Plan → Frame: owns the GPU context and the caches, and runs the planned passes.
 
 mod buffers;
 mod collect;
@@ -34,8 +34,8 @@ use crate::scene::{ResolvedScene, SceneError};
 use crate::stages::objects::GEOMETRY;
 use crate::stages::points::Point;
 use crate::stats::{
-    AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, PassStats, Stats,
-    TimeStats, Warning,
+    AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, MethodStats, PassStats,
+    Stats, TimeStats, Warning,
 };
 
 pub use prepared::Prepared;
@@ -70,7 +70,7 @@ pub enum RenderError {
     /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// Nobody waits for the frame any more.
+    /// The frame is no longer needed.
     #[error("cancelled")]
     Cancelled,
 }
@@ -81,7 +81,7 @@ impl From<PlanError> for RenderError {
     }
 }
 
-/// Idle polls (one a second) after which buffers kept for the next frame are given up.
+/// Idle polls (one a second) after which buffers kept for the next frame are freed.
 const IDLE_POLLS: u32 = 5;
 
 /// Owns the GPU context and the caches; lives on the GPU thread.
@@ -116,7 +116,7 @@ impl Renderer {
         Self::with_shaders(config, methods::embedded())
     }
 
-    /// The same with shader sources of one's own: for tests that break a formula on purpose.
+    /// Like [`Self::new`], with the given shader sources: for tests that break a formula on purpose.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -181,7 +181,7 @@ impl Renderer {
         self.plan_prepared(&Prepared::new(resolved.clone())?, cancel)
     }
 
-    /// What would run, given what is cached now. Nothing does, but for the looks by which dials are chosen where `quality` asks for
+    /// Plans a frame, given what is cached now. Nothing is rendered, except the trial renders that choose the dials if `quality` requests
     /// an error or a time.
     ///
     /// # Errors
@@ -210,7 +210,7 @@ impl Renderer {
         self.render_prepared(&Prepared::new(resolved.clone())?, cancel)
     }
 
-    /// Renders; `cancel` is looked at between submissions. Where the GPU runs out of memory the caches make way and the frame is
+    /// Renders a frame; `cancel` is checked between submissions. If the GPU runs out of memory, the caches are emptied and the frame is
     /// tried once more.
     ///
     /// # Errors
@@ -258,12 +258,13 @@ impl Renderer {
             .map(|pass| pass.name)
             .collect();
         let plan = plan.report;
-        // Some of the work is done while more is recorded, so that it takes longer than anybody waits.
+        // Some GPU work overlaps with recording, so a pass may take longer than the host waits: the limit is the whole run.
         let gpu_times = self.timing.collect(&self.gpu, ms_since(ran))?;
         let mut stats = Stats {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scene_hash: prepared.scene_hash().to_owned(),
             adapter: self.adapter(),
+            method: method_stats(facts),
             passes: plan
                 .passes
                 .iter()
@@ -299,9 +300,9 @@ impl Renderer {
             exposure: exposure(facts, resolved),
             warnings: plan.warnings,
         };
-        let has_looked = !stats.energy.is_empty();
-        collect::join_warnings(&mut stats.warnings, run.warnings, has_looked);
-        collect::tell_flux(&mut stats.warnings, facts, &stats.energy);
+        let was_measured = !stats.energy.is_empty();
+        collect::join_warnings(&mut stats.warnings, run.warnings, was_measured);
+        collect::add_flux_to_warnings(&mut stats.warnings, facts, &stats.energy);
         if let Some(tune::Tuned { chosen, .. }) = tuned {
             let unmet = tune::unmet(prepared.resolved(), &chosen);
             stats.warnings.extend(unmet);
@@ -319,7 +320,7 @@ impl Renderer {
         })
     }
 
-    /// What the pixels of a view see, or where the texels of a map lie, row by row; in local coordinates, around
+    /// The points that the pixels of a view see, or where the texels of a map lie, row by row, in local coordinates around
     /// [`SceneFacts::origin_m`].
     ///
     /// # Errors
@@ -335,8 +336,8 @@ impl Renderer {
         Ok(self.run(resolved, &facts, &plan, cancel)?.points)
     }
 
-    /// The plan of a frame. Level maps of other scenes make way where they would not fit beside it: whether a frame is rendered does not
-    /// depend on what is cached.
+    /// The plan of a frame. Level maps of other scenes are dropped if they do not fit beside it, so whether a frame can be rendered does
+    /// not depend on the cache.
     fn plan_in_budget(
         &mut self,
         facts: &SceneFacts,
@@ -386,10 +387,10 @@ impl Renderer {
             cancel,
         };
         let result = self.execute(resolved, job);
-        // Maps that are whole stay, also those of a frame that was cancelled after them.
+        // Finished maps stay, even if the frame was cancelled later.
         self.level_maps.forget_unbuilt();
         if let Err(RenderError::Gpu(_)) = &result {
-            // Which buffers the device failed on is not known, so nothing that would outlive the frame is trusted.
+            // It is unknown which buffers the device failed on, so nothing that would outlive the frame is kept.
             self.level_maps.clear();
             self.arena = None;
             self.geometry.clear();
@@ -419,14 +420,14 @@ impl Renderer {
         self.bind_groups.clear();
     }
 
-    /// Drops all buffers that are kept for later frames, but for level maps and geometry.
+    /// Drops all buffers that are kept for later frames, except level maps and geometry.
     fn drop_buffers(&mut self) {
         self.pool.clear();
         self.uniforms = Uniforms::default();
         self.bind_groups.clear();
     }
 
-    /// The level-map cache since the start (hits, misses, evictions) and now (entries, bytes).
+    /// Statistics of the level-map cache: hits, misses and evictions since the start; entries and bytes now.
     pub fn level_map_cache(&self) -> CacheStats {
         self.level_maps.stats()
     }
@@ -441,44 +442,44 @@ impl Renderer {
         self.geometry.uploaded_bytes()
     }
 
-    /// How often since the start a light was followed again because its narrow flux sums had wrapped.
+    /// Number of times since the start that a beam set was traced again because its narrow flux sums had wrapped.
     pub fn wide_sum_reruns(&self) -> u64 {
         self.wide_sum_reruns
     }
 
-    /// How often since the start what comes after a light was recorded while the GPU was at work on it.
+    /// Number of times since the start that the commands after a beam set were recorded while the GPU worked on it.
     pub fn recorded_ahead(&self) -> u64 {
         self.recorded_ahead
     }
 
-    /// How many bind groups were made since the start that may serve a later dispatch too.
+    /// Number of reusable bind groups made since the start.
     pub fn bind_groups_made(&self) -> u64 {
         self.bind_groups.made()
     }
 
-    /// Whether frames report what the GPU's allocator has given out (`stats.memory.allocated_bytes`).
+    /// Whether frames report the bytes of the GPU's allocator (`stats.memory.allocated_bytes`).
     pub fn watch_allocator(&mut self, on: bool) {
         self.watches_allocator = on;
     }
 
-    /// Whether passes are timed where only the host can do that, which has to submit each on its own and wait for it. So it is unless
-    /// told otherwise; without it such frames tell no times of passes, and go to the adapter as they do where it has a clock.
+    /// Whether passes are timed on adapters without usable timestamps. There each pass is submitted alone and timed on the CPU. On by
+    /// default; if off, such frames report no pass times, and are submitted as on other adapters.
     pub fn time_by_host(&mut self, on: bool) {
         self.timing.allow_host(&self.gpu, on);
     }
 
-    /// Most workgroups that run as one piece, whatever their time; `None`: pieces are cut by their time, of long dispatches only.
+    /// Largest number of workgroups of a piece, whatever its time; `None`: only long dispatches are cut, by time.
     pub fn cut_into(&mut self, most_groups: Option<u64>) {
         self.cutting.most_groups = most_groups;
     }
 
-    /// Counts pieces from here on.
+    /// Resets the count of pieces.
     pub fn forget_pieces(&mut self) {
         self.cutting.forget();
     }
 
-    /// Pieces that dispatches were cut into since the start or [`forget_pieces`](Self::forget_pieces), and the time of the longest,
-    /// ms.
+    /// Number of pieces that dispatches were cut into since the start or [`forget_pieces`](Self::forget_pieces), and the time of the
+    /// longest piece, ms.
     pub fn pieces(&self) -> (u64, f64) {
         (self.cutting.pieces, self.cutting.longest_ms)
     }
@@ -490,10 +491,10 @@ impl Renderer {
             + self.geometry.bytes()
     }
 
-    /// To be called now and then when there is nothing to do: lets the driver free what is no longer used.
+    /// To be called regularly when idle: lets the driver free unused memory.
     ///
     /// # Errors
-    /// What the device reported in the meantime, a loss above all.
+    /// An error that the device reported in the meantime, such as its loss.
     pub fn idle(&mut self) -> Result<(), GpuError> {
         self.idle_polls = self.idle_polls.saturating_add(1);
         if self.idle_polls == IDLE_POLLS {
@@ -520,7 +521,7 @@ impl Renderer {
                 return Err(RenderError::OverBudget {
                     what: format!(
                         "buffer `{name}` (the device's limit for one binding{})",
-                        what_helps(plan, name)
+                        size_advice(plan, name)
                     ),
                     needed_bytes: planned.bytes,
                     budget_bytes: limit,
@@ -531,8 +532,8 @@ impl Renderer {
     }
 }
 
-/// What would make a buffer smaller, where it holds maps of many objects.
-fn what_helps(plan: &FramePlan, slot: &str) -> &'static str {
+/// Advice on how to make a buffer smaller, if it holds maps of objects.
+fn size_advice(plan: &FramePlan, slot: &str) -> &'static str {
     let holds_maps = ["flux", "irradiance"].contains(&slot);
     let has_objects = plan.graph.slot(&GEOMETRY).is_some();
     if holds_maps && has_objects {
@@ -556,7 +557,7 @@ impl Cached for Renderer {
     }
 }
 
-/// What running a plan gave.
+/// Result of running a plan.
 #[derive(Debug)]
 struct RunResult {
     width: u32,
@@ -569,7 +570,7 @@ struct RunResult {
     warnings: Vec<Warning>,
     time_ms: TimeStats,
     peak_bytes: u64,
-    /// More than planned where maps that were cached had to make way and come back.
+    /// More than planned if cached maps had to be evicted and built again.
     level_maps_built: u32,
     allocated_bytes: Option<u64>,
 }
@@ -591,7 +592,7 @@ fn check_cancelled(cancel: &CancellationToken) -> Result<(), RenderError> {
     }
 }
 
-/// What `work` gives, its time added.
+/// Runs `work` and adds its time to `ms`.
 fn timed<T>(ms: &mut f64, work: impl FnOnce() -> T) -> T {
     let started = Instant::now();
     let result = work();
@@ -601,6 +602,14 @@ fn timed<T>(ms: &mut f64, work: impl FnOnce() -> T) -> T {
 
 fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
+}
+
+fn method_stats(facts: &SceneFacts) -> MethodStats {
+    MethodStats {
+        name: facts.method.name.to_owned(),
+        paper: methods::of(&facts.quality).paper.to_owned(),
+        conserves_energy: facts.method.conserves_energy,
+    }
 }
 
 fn cache_change(before: &CacheStats, after: &CacheStats) -> CacheStats {

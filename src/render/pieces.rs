@@ -1,4 +1,4 @@
-//! Dispatches that may run long, piece by piece: each piece is submitted, waited for and timed, and sizes the next.
+//! Runs long dispatches piece by piece: each piece is submitted alone and timed, and its time sizes the next one.
 
 use std::time::Instant;
 
@@ -11,34 +11,34 @@ use crate::gpu::readback;
 use crate::stages::sums::FLUX;
 use crate::stages::{Groups, Slot, Step, Work};
 
-/// Workgroups that run in one go, and first piece of a larger dispatch: about what the largest GPUs hold at once (132 multiprocessors with 32
-/// each), and as many as the vertices of 512 water cells need.
+/// Largest number of workgroups that run in one dispatch, and size of the first piece of a larger dispatch. About the number that the
+/// largest GPUs hold at once (132 multiprocessors with 32 each), and as many as the vertices of 512 water cells need.
 const FIRST_GROUPS: u64 = 4224;
-/// The same of a dispatch that empties a queue: there a workgroup may have all texels of the maps to itself.
+/// The same for a dispatch that empties a queue: there one workgroup may have to write all texels of the maps.
 const FIRST_QUEUE_GROUPS: u64 = 256;
-/// Words of a queue or of the flux sums up to which queues are emptied in one go: how many workgroups that takes only the GPU
-/// knows, and asking costs a small frame more than it could save.
+/// Largest size of a queue or of the flux sums, in words, at which queues are emptied in one dispatch. Only the GPU knows the number of
+/// workgroups of a queue, and reading it back costs a small frame more than it could save.
 const SHORT_WORDS: u64 = 1 << 22;
 
 fn words(slot: &Slot, slots: &FrameSlots) -> u64 {
     slots.buffer(slot).1 / 4
 }
 
-/// Whether a queue is emptied in one go.
+/// Whether a queue is emptied in one dispatch.
 fn is_short(queue: &Slot, slots: &FrameSlots) -> bool {
     words(queue, slots).max(words(&FLUX, slots)) <= SHORT_WORDS
 }
 
-/// How dispatches are cut, and what came of it.
+/// How dispatches are cut, and statistics of the pieces.
 #[derive(Debug, Default)]
 pub(super) struct Cutting {
-    /// Most workgroups of a piece, where that is asked for.
+    /// Largest number of workgroups of a piece, if it is fixed.
     pub(super) most_groups: Option<u64>,
-    /// Pieces since the start.
+    /// Number of pieces since the start.
     pub(super) pieces: u64,
-    /// Time of the longest, ms.
+    /// Time of the longest piece, ms.
     pub(super) longest_ms: f64,
-    /// Time of pieces that no account has yet, ms.
+    /// Time of pieces that is not yet in the frame's statistics, ms.
     pub(super) unaccounted_ms: f64,
     cancel: CancellationToken,
 }
@@ -55,7 +55,7 @@ impl Cutting {
 }
 
 impl Renderer {
-    /// Whether a step's dispatch may be cut, so that it runs when it is recorded.
+    /// Whether a step's dispatch may be cut into pieces, which run while they are recorded.
     pub(super) fn may_be_cut(&self, step: &Step, slots: &FrameSlots) -> bool {
         let Work::Compute(groups) = step.work else {
             return false;
@@ -69,8 +69,8 @@ impl Renderer {
         }
     }
 
-    /// The workgroups of a dispatch that is to be cut and the most of its first piece; `None` where it runs in one go. What is in
-    /// `encoder` is submitted where the GPU has to be asked how many there are.
+    /// The number of workgroups of a dispatch that must be cut, and the largest number of its first piece; `None` if it runs in one
+    /// dispatch. Submits the commands in `encoder` if the number has to be read back from the GPU.
     pub(super) fn cut_of(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -78,27 +78,27 @@ impl Renderer {
         groups: Groups,
         slots: &FrameSlots,
     ) -> Result<Option<([u32; 3], u64)>, RenderError> {
-        let asked = self.cutting.most_groups;
+        let fixed = self.cutting.most_groups;
         let (all, first) = match groups {
             Groups::Direct(all) => (all, FIRST_GROUPS),
             Groups::Queue(slot, _) => {
-                if asked.is_none() && is_short(slot, slots) {
+                if fixed.is_none() && is_short(slot, slots) {
                     return Ok(None);
                 }
                 self.submit_now(encoder, pass)?;
                 let read: Vec<u32> = readback::read(&self.gpu, &slots.indirect, 12)?;
                 let all = <[u32; 3]>::try_from(read.as_slice()).unwrap_or_default();
-                // As much to do as the full number has on the largest maps that are emptied in one go.
+                // As much work as the full number has on the largest maps whose queues are emptied in one dispatch.
                 let larger = words(&FLUX, slots).div_ceil(SHORT_WORDS).max(1);
                 (all, (FIRST_QUEUE_GROUPS / larger).max(1))
             }
         };
-        let first = asked.unwrap_or(first);
+        let first = fixed.unwrap_or(first);
         let count: u64 = all.map(u64::from).iter().product();
         Ok((count > first).then_some((all, first)))
     }
 
-    /// Runs a dispatch of `all` workgroups piece by piece, the first of `first` at most; `record` puts a piece into an encoder.
+    /// Runs a dispatch of `all` workgroups piece by piece; the first piece has at most `first` of them. `record` records a piece.
     pub(super) fn run_pieces(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -123,14 +123,14 @@ impl Renderer {
             self.cutting.longest_ms = self.cutting.longest_ms.max(ms);
             done += piece.count();
             most = match self.cutting.most_groups {
-                Some(asked) => asked,
+                Some(fixed) => fixed,
                 None => next_size(piece.count(), ms),
             };
         }
         Ok(())
     }
 
-    /// Submits what is recorded of a pass, waits for it, and starts over with an empty encoder; ms.
+    /// Submits the recorded commands of a pass, waits for them, and starts a new encoder. Returns the time, ms.
     fn submit_now(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

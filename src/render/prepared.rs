@@ -1,4 +1,4 @@
-//! A scene as it goes to the GPU thread: with all that can be known of it before.
+//! A scene as it is sent to the GPU thread, with everything that can be computed before.
 
 use std::time::Instant;
 
@@ -8,8 +8,9 @@ use crate::methods;
 use crate::scene::{ResolvedScene, SceneError};
 use crate::tuning::chooses_dials;
 
-/// A scene with its facts, its warnings and its hash. Made where the request is, which may take 100 ms for the warnings of a large
-/// scene, so that the GPU thread has only to plan and render.
+/// A scene with its facts, its warnings and its hash. Computed on the thread of the request, so that the GPU thread only has to plan and
+/// render. The scenes of this project take up to 3 ms, for the light of a sky and the windows of point lights; the rays for warnings take
+/// longer.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     resolved: ResolvedScene,
@@ -19,8 +20,8 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Finds facts and warnings of a scene. Where [its dials are chosen](Self::asks_for_dials) facts of the dials as they stand, to
-    /// find errors early, and no warnings: they are those of the chosen dials, which only the GPU thread knows.
+    /// Finds facts and warnings of a scene. If [its dials are to be chosen](Self::asks_for_dials), the facts are those of the current dials,
+    /// to find errors early, and there are no warnings: these depend on the chosen dials, which only the GPU thread knows.
     ///
     /// # Errors
     /// When the scene cannot be rendered, whatever the GPU.
@@ -34,8 +35,8 @@ impl Prepared {
         Ok(Self::of(resolved, facts, started))
     }
 
-    /// The same scene at another moment, such as the next frame of an animation: just what [`new`](Self::new) makes of it, but what
-    /// does not depend on time is taken over. `time_s` has to be valid, as in a validated scene.
+    /// The same scene at another time, such as the next frame of an animation. The result equals that of [`new`](Self::new), but facts
+    /// that do not depend on time are reused. `time_s` must be valid, as in a validated scene.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -58,7 +59,7 @@ impl Prepared {
         }
     }
 
-    /// The same scene with other facts than its own: for programs that carry light in other beam sets than the scene says.
+    /// The same scene with changed facts: for programs that trace other beam sets than the scene has.
     #[must_use]
     pub fn with_facts(mut self, change: impl FnOnce(&mut SceneFacts)) -> Self {
         change(&mut self.facts);
@@ -70,7 +71,7 @@ impl Prepared {
         &self.resolved
     }
 
-    /// Its facts, with all warnings that can be found before rendering; without them where [its dials are
+    /// Its facts, with all warnings that can be found before rendering; without warnings if [its dials are to be
     /// chosen](Self::asks_for_dials).
     pub fn facts(&self) -> &SceneFacts {
         &self.facts
@@ -81,12 +82,12 @@ impl Prepared {
         &self.scene_hash
     }
 
-    /// What preparing it took, ms; a part of `stats.time_ms.plan`.
+    /// Time of the preparation, ms; a part of `stats.time_ms.plan`.
     pub fn took_ms(&self) -> f64 {
         self.took_ms
     }
 
-    /// Whether `quality` asks for an error or a time, from which the renderer chooses the dials.
+    /// Whether `quality` requests an error or a time, so that the renderer chooses the dials.
     pub fn asks_for_dials(&self) -> bool {
         chooses_dials(&self.resolved.scene.quality)
     }

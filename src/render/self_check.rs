@@ -1,4 +1,4 @@
-//! Is the picture right on this machine? Every formula and a small scene, GPU against float64.
+//! Self-check of this machine: every formula and two small scenes, GPU against float64.
 
 use tokio_util::sync::CancellationToken;
 
@@ -151,16 +151,16 @@ fn small_scene(waves: &str) -> ResolvedScene {
     }
 }
 
-/// The worst of a twin's f32 half over its domain.
+/// Largest error of a formula's f32 twin over its domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwinError {
-    /// Error as a share of what the tolerance allows; infinite for what is no number.
+    /// Error as a share of the tolerance; infinite if the result is not a number.
     pub share: f64,
-    /// Where.
+    /// Arguments with this error.
     pub arguments: [f64; 8],
 }
 
-/// Largest error of a twin's f32 half over its domain, and where.
+/// Largest error of a formula's f32 twin over its domain, with its arguments.
 ///
 /// # Errors
 /// When the GPU fails or the shader does not compile.

@@ -1,4 +1,4 @@
-//! Asking for accuracy or time instead of dials: looks at the scene's light, and chooses.
+//! Chooses dials for a requested error or time, by trial renders of the scene's light.
 
 use tokio_util::sync::CancellationToken;
 
@@ -19,7 +19,7 @@ pub(super) struct Tuned {
 }
 
 impl Renderer {
-    /// The scene with dials chosen for what `quality` asks; `None` where it asks for nothing.
+    /// The scene with dials chosen for the error or time that `quality` requests; `None` if it requests neither.
     pub(super) fn tuned(
         &mut self,
         prepared: &Prepared,
@@ -34,7 +34,7 @@ impl Renderer {
         } else {
             return Ok(None);
         };
-        // Here and not with the request: trial renders on this device decide which scene it is whose facts and warnings count.
+        // Prepared here and not with the request, because trial renders on this device choose the dials that facts and warnings depend on.
         let rung = Prepared::new(with_cells(resolved, chosen.water_cells))?;
         Ok(Some(Tuned { rung, chosen }))
     }
@@ -61,7 +61,7 @@ impl Renderer {
             )
         } else {
             format!(
-                "{} trial renders: no number of cells is sure to stay under {target}; these are predicted to come nearest",
+                "{} trial renders: no number of cells is certain to stay under {target}; these are predicted to come nearest",
                 choice.probes
             )
         };
@@ -83,12 +83,13 @@ impl Renderer {
         let most = self.most_cells(resolved)?;
         let (cells, meets) =
             choose::for_time(budget_ms, most, |cells| self.predicted_ms(resolved, cells))?;
-        // A probe that is fine enough to extrapolate from.
-        let probed = (cells / 2).max(ladder::FEWEST_CELLS);
-        let error = self.probe(resolved, probed, cancel)?.unwrap_or(0.0);
+        // A trial render with enough cells to predict the error from.
+        let probe_cells = (cells / 2).max(ladder::FEWEST_CELLS);
+        let probed = self.probe(resolved, probe_cells, cancel)?;
+        let error = probed.unwrap_or(0.0);
         let is_view = resolved.scene.output.is_view();
         let margin = choose::margin(self.calibration.error_margin, is_view);
-        let predicted = choose::extrapolated(error * margin, probed, cells, is_view);
+        let predicted = choose::extrapolated(error * margin, probe_cells, cells, is_view);
         let reason = if meets {
             format!("the most cells that are predicted to take at most {budget_ms} ms")
         } else {
@@ -118,7 +119,7 @@ impl Renderer {
         })
     }
 
-    /// Hash of all that decides, besides the scene and the adapter, which dials are chosen.
+    /// Hash of everything besides the scene and the adapter that the chosen dials depend on.
     pub fn dial_basis(&self) -> String {
         let calibration = &self.calibration;
         let budgets = [
@@ -132,7 +133,8 @@ impl Renderer {
             .to_string()
     }
 
-    /// The most cells whose frame fits the memory of an empty GPU, whatever is cached now: the same request gets the same dials.
+    /// The largest number of cells whose frame fits the memory of an empty GPU. Independent of the cache, so that the same request gets the
+    /// same dials.
     fn most_cells(&self, resolved: &ResolvedScene) -> Result<u32, RenderError> {
         let (mut low, mut high) = (ladder::FEWEST_CELLS, ladder::MOST_CELLS + 1);
         let empty = NothingCached {
@@ -155,7 +157,7 @@ impl Renderer {
         Ok(low)
     }
 
-    /// What a warm frame with so many cells will take, ms.
+    /// Predicted time of a warm frame with this number of cells, ms.
     fn predicted_ms(&self, resolved: &ResolvedScene, cells: u32) -> Result<f64, RenderError> {
         let facts = methods::facts(&with_cells(resolved, cells))?;
         let plan = plan::plan_scene(&facts, Wanted::Frame, &WarmCache)?;
@@ -167,7 +169,7 @@ impl Renderer {
         ))
     }
 
-    /// What the light with so many cells estimates its own error to be; no picture is made.
+    /// A trial render: the error estimate of the maps with this number of cells. No picture is made.
     fn probe(
         &mut self,
         resolved: &ResolvedScene,
@@ -189,7 +191,7 @@ fn with_cells(resolved: &ResolvedScene, cells: u32) -> ResolvedScene {
     rung
 }
 
-/// What to say where predictions rest on another machine.
+/// A warning if predictions rest on the calibration of another machine.
 pub(super) fn foreign(calibrated: &str, adapter: &str) -> Option<Warning> {
     (calibrated != adapter).then(|| {
         Warning::new(
@@ -201,7 +203,7 @@ pub(super) fn foreign(calibrated: &str, adapter: &str) -> Option<Warning> {
     })
 }
 
-/// What to say where a wish cannot be met.
+/// A warning if the requested error or time cannot be met.
 pub(super) fn unmet(resolved: &ResolvedScene, chosen: &ChosenDials) -> Option<Warning> {
     if chosen.meets {
         return None;

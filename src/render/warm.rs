@@ -1,4 +1,4 @@
-//! Level maps ahead of the frames that will ask for them.
+//! Builds level maps before a frame needs them.
 
 use std::sync::Arc;
 
@@ -13,8 +13,8 @@ use crate::methods;
 use crate::plan::{self, Cached as _, Wanted};
 
 impl Renderer {
-    /// Builds the level maps that an unrotated, uniformly scaled instance of `mesh` needs under some suns, as a frame would, and
-    /// says of each sun what is ready now. Those that are there already count as used.
+    /// Builds the level maps that an unrotated, uniformly scaled instance of `mesh` needs under the given suns, as a frame would. Reports
+    /// the map of each sun. Maps that are cached already count as used.
     ///
     /// # Errors
     /// As [`Self::render`]; the maps finished by then stay.
@@ -24,7 +24,7 @@ impl Renderer {
         wanted: &WarmUp,
         cancel: &CancellationToken,
     ) -> Result<Vec<WarmedMap>, RenderError> {
-        // Where all is there nothing is submitted, and only a poll tells of a lost device.
+        // If all maps are cached nothing is submitted, and only a poll detects a lost device.
         self.gpu.tidy();
         self.gpu.check()?;
         let resolved = wanted.scene_of(mesh)?;

@@ -56,7 +56,8 @@ pub(super) fn moved(given: &str, fields: &[&str]) -> Option<(&'static str, Strin
     if given == "placement" {
         return Some((
             "the method alone says where light is placed",
-            "the word of `placement` as `method`, and in place of `hit` no `method`".to_owned(),
+            "`method` with the word that `placement` had, or no `method` where that was `hit`"
+                .to_owned(),
         ));
     }
     if meant(given, fields).is_some() {

@@ -1,4 +1,4 @@
-//! Beams — refracted ray and transmittance under each vertex of the water grid.
+//! Beams — refracted direction and transmittance under each vertex of the water grid.
 
 use super::light::Light;
 use super::surface::{SURFACE, cells, grid_step, vertices, wanted_for_light};

@@ -1,4 +1,4 @@
-//! Camera hits — what each pixel sees, through true refraction at the water.
+//! Camera hits — the surface that each pixel sees, with refraction at the actual water surface.
 
 use super::gpu_values::{vec2, vec4};
 use super::objects::{GEOMETRY, INSTANCES};
@@ -9,8 +9,8 @@ use crate::facts::SceneFacts;
 use crate::gpu_struct;
 use crate::graph::BandRun;
 
-/// What a sample of a pixel whose march along the water ended early adds to its notes (the fourth value of its radiance); one that sees
-/// the floor beside its map adds 1.
+/// Added to a pixel's notes (the fourth value of its radiance) by a sample whose march along the water ran out of steps. A sample that
+/// sees the floor beside its map adds 1.
 pub const MARCH_UNFINISHED: f32 = 128.0;
 
 gpu_struct! {
@@ -48,21 +48,21 @@ gpu_struct! {
     }
 }
 
-/// Distance of what pixels see first.
+/// Distance of the first surface that pixels see.
 pub static VISIBLE_DEPTH: Slot = Slot::buffer(
     "visible_depth",
     "distance along the viewing axis to the first surface m per pixel",
     |facts| 4 * pixels(facts),
 );
 
-/// What pixels see: reflectance, and the path to it.
+/// Reflectance of the surface that pixels see, and the path length under water to it.
 pub static VISIBLE_ALBEDO: Slot = Slot::buffer(
     "visible_albedo",
     "reflectance and path under water m per pixel",
     |facts| 16 * pixels(facts),
 );
 
-/// What pixels see: through what.
+/// Weights of surface and sky in a pixel's radiance, and path length under water of the sky's light.
 pub static VISIBLE_TRANSPORT: Slot = Slot::buffer(
     "visible_transport",
     "weights of surface and sky, path of the sky's light m, notes per pixel",
@@ -87,14 +87,14 @@ pub(super) fn pixels(facts: &SceneFacts) -> u64 {
     facts.output.camera.map_or(0, |_| points_of_a_band(facts))
 }
 
-/// Passes that follow a picture are in when there is one.
+/// The reason why passes that make a picture run: the output has a camera.
 pub(super) fn wanted_for_camera(facts: &SceneFacts) -> Result<String, String> {
     match &facts.output.camera {
         Some(camera) => Ok(format!(
             "a view of {} × {} pixels",
             camera.width, camera.height
         )),
-        None => Err("the output is an irradiance map, seen by no camera".to_owned()),
+        None => Err("the output is an irradiance map, which has no camera".to_owned()),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Camera irradiance — the light on what each pixel sees: from the receivers' maps under water, from the lights above it.
+//! Camera irradiance — irradiance of the surface that each pixel sees: under water from the receivers' maps, above it from the lights.
 
 use super::camera_hits::{View, pixel_step, pixels, wanted_for_camera};
 use super::gpu_values::vec4;
@@ -33,12 +33,12 @@ pub static PASS: Pass = Pass {
         wanted_for_camera(facts)?;
         if facts.method.product == Product::PointIrradiance {
             return Err(format!(
-                "method {} finds the light at the points itself",
+                "method {} computes the irradiance at the points itself",
                 facts.method.name
             ));
         }
         if facts.output.wants_irradiance() {
-            Ok("the picture needs the light on what it shows".to_owned())
+            Ok("the picture needs the irradiance of the surfaces it shows".to_owned())
         } else {
             Err("neither radiance nor irradiance is among the layers".to_owned())
         }
@@ -54,7 +54,7 @@ pub static PASS: Pass = Pass {
 };
 
 fn air_lights(facts: &SceneFacts) -> Vec<u8> {
-    // No more than that pass the facts.
+    // The facts refuse scenes with more lights.
     let mut all = [AirLight::default(); MOST_LIGHTS];
     for (slot, light) in all.iter_mut().zip(&facts.lights.in_air) {
         *slot = AirLight {

@@ -1,5 +1,5 @@
-//! Coarse irradiance — what the light that is done again with two fifths of the water cells or fewer leaves at the places where the estimate
-//! looks: coarse maps are never made whole.
+//! Coarse irradiance — irradiance from coarse beam sets (light traced again with at most two fifths of the water cells) at the places that
+//! the estimate compares. Coarse maps are never resolved as a whole.
 
 use super::estimate::{self, COMPARISONS, Compared, places_of_groups};
 use super::gpu_values::vec4;
@@ -24,10 +24,10 @@ gpu_struct! {
     }
 }
 
-/// Irradiance of the light done coarsely.
+/// Irradiance of the coarse beam sets.
 pub static COARSE_IRRADIANCE: Slot = Slot::buffer(
     "coarse_irradiance",
-    "linear RGB of the light done coarsely per place that is compared, W/m²",
+    "linear RGB of the coarse beam sets per compared place, W/m²",
     |facts| 12 * places_of_groups(facts),
 );
 
@@ -45,7 +45,7 @@ pub static PASS: Pass = Pass {
     wanted: |facts| {
         estimate::wanted(facts)?;
         Ok(format!(
-            "the light is done again with {} water cells",
+            "light is traced again with {} water cells",
             estimate::coarse_cells(facts)
         ))
     },
@@ -89,7 +89,7 @@ pub static PASS: Pass = Pass {
     work,
 };
 
-/// All passes of the light with fewer cells on the coarse maps, then its part of the places that are compared.
+/// Work of all passes of one coarse beam set on the coarse maps, and its part of the compared places.
 fn work(facts: &SceneFacts) -> f64 {
     let maps = MapLayout::with_floor(facts, estimate::coarse_floor_map(facts));
     let sums = cost_of_channels(facts);

@@ -1,4 +1,4 @@
-//! Deposit — lays the beams of a beam set on the receivers' maps by exact texel coverage.
+//! Deposit — adds the flux of a beam set's beams to the receivers' maps by exact texel coverage.
 
 use super::beams::BEAMS;
 use super::hits::HITS;
@@ -14,7 +14,7 @@ use crate::graph::Clear;
 /// Water cells along a side of a workgroup's square, as in the shader.
 pub(super) const CELLS_ALONG_GROUP: u32 = 8;
 
-/// Footprints for a workgroup of their own.
+/// Wide footprints, each shared by several workgroups.
 pub static WIDE_QUEUE: Slot = Slot {
     clear: Clear::Head(&[0, WIDE_GROUPS, 1, 0]),
     ..Slot::buffer(
@@ -45,6 +45,6 @@ pub static PASS: Pass = Pass {
             Step::compute("deposit_wide", Groups::Queue(&WIDE_QUEUE, 0), uniforms),
         ]
     }),
-    // Beams cover the maps about twice over, however many there are.
+    // The beams cover the maps about twice, whatever their number.
     work: |facts| (5.0 * cells(facts) + texels(facts)) * cost_of_channels(facts),
 };

@@ -1,4 +1,4 @@
-//! Estimate — compares the maps with those of the light done coarsely: the frame's own estimate of its error.
+//! Estimate — compares the maps with those of the coarse beam sets: the frame's own estimate of its error.
 
 use super::coarse_irradiance::COARSE_IRRADIANCE;
 use super::deposit::CELLS_ALONG_GROUP;
@@ -14,10 +14,11 @@ use crate::scene::Receiver;
 
 /// Places (texels or blocks of them) of a workgroup, as in the shader.
 pub const PLACES_PER_GROUP: u32 = 64 * 2;
-/// A map of twice as many places and more is looked at in about so many, spread over it: their mean is the map's to a few hundredths,
-/// where the estimate itself is good to a factor of two.
+/// A map with at least twice this many places is sampled at about this many, spread over it. Their mean is within a few hundredths of
+/// the map's mean; the estimate itself is good to a factor of two.
 const ENOUGH_PLACES: u32 = 2048;
-/// Fine texels along a side of the largest blocks that are compared. Half as many of those are enough: reading them is what costs.
+/// Fine texels along a side of the largest blocks that are compared. Half as many of these blocks are enough, because reading their
+/// texels dominates the cost.
 const QUARTER: u32 = 4;
 
 gpu_struct! {
@@ -50,7 +51,7 @@ gpu_struct! {
     }
 }
 
-/// The maps that are compared with those of the light done coarsely.
+/// The maps that are compared with those of the coarse beam sets.
 pub static COMPARISONS: Slot = Slot {
     origin: Origin::Host,
     element: Some(Comparison::LAYOUT),
@@ -61,7 +62,7 @@ pub static COMPARISONS: Slot = Slot {
     )
 };
 
-/// How far those are from the maps.
+/// Differences between the maps and the coarse ones.
 pub static DIFFERENCES: Slot = Slot::buffer(
     "differences",
     "sums of |fine − coarse| and fine per workgroup, W/m²",
@@ -78,7 +79,7 @@ pub static PASS: Pass = Pass {
     uniforms: &[("estimate", Estimate::LAYOUT)],
     wanted: |facts| {
         wanted(facts)?;
-        Ok("the maps are compared with those of the light done coarsely".to_owned())
+        Ok("the maps are compared with those of the coarse beam sets".to_owned())
     },
     steps: Steps::Estimate(|facts| {
         let compared = compared(facts);
@@ -97,26 +98,26 @@ pub static PASS: Pass = Pass {
     work: |facts| compared_places(facts, |_| true),
 };
 
-/// Places at which a frame's estimate of its own error compares these maps.
+/// Number of places at which the estimate compares these maps.
 fn compared_places(facts: &SceneFacts, these: impl Fn(&Compared) -> bool) -> f64 {
     let compared = compared(facts);
     let these = compared.iter().filter(|map| these(map));
     these.map(|map| f64::from(map.comparison.places)).sum()
 }
 
-/// Those of one light, as a mean: the floor's, to which every light adds, and those of its own maps.
+/// Mean number of compared places per light: the floor's, to which every light adds, and those of the light's own maps.
 pub(super) fn places_of_a_light(facts: &SceneFacts) -> f64 {
     let lights = facts.lights.lit.len().max(1) as f64;
     compared_places(facts, |map| map.light.is_none())
         + compared_places(facts, |map| map.light.is_some()) / lights
 }
 
-/// Places of all workgroups that compare.
+/// Number of places of all comparing workgroups.
 pub(super) fn places_of_groups(facts: &SceneFacts) -> u64 {
     u64::from(PLACES_PER_GROUP) * u64::from(groups_of(&compared(facts)))
 }
 
-/// Whether the error is to be estimated.
+/// The reason why the error is estimated, or why not.
 pub(super) fn wanted(facts: &SceneFacts) -> Result<String, String> {
     if !facts.quality.estimate_error {
         return Err("quality.estimate_error is false".to_owned());
@@ -133,11 +134,11 @@ pub(super) fn wanted(facts: &SceneFacts) -> Result<String, String> {
 /// A map that is compared.
 #[derive(Clone, Copy, Debug)]
 pub struct Compared {
-    /// What the shaders need of it.
+    /// Its parameters for the shaders.
     pub comparison: Comparison,
-    /// Area that a fine texel which is looked at stands for, m².
+    /// Area that a compared fine texel stands for, m².
     pub texel_m2: f64,
-    /// The light it is of; `None` of the floor's, to which every light adds.
+    /// The light of the map; `None` for the floor's map, to which every light adds.
     pub light: Option<usize>,
 }
 
@@ -197,7 +198,7 @@ pub fn compared(facts: &SceneFacts) -> Vec<Compared> {
         for (object, level_box) in light.boxes.iter().enumerate() {
             let Some(level_box) = level_box else { continue };
             let side = level_box.key.texels;
-            for layer in (0..layers).filter(|layer| is_asked_for(facts, object, *layer)) {
+            for layer in (0..layers).filter(|layer| is_requested(facts, object, *layer)) {
                 let comparison = Comparison {
                     fine_width: side,
                     fine_height: side,
@@ -216,8 +217,8 @@ pub fn compared(facts: &SceneFacts) -> Vec<Compared> {
     all
 }
 
-/// Whether a map of an object is of what the output shows.
-fn is_asked_for(facts: &SceneFacts, object: usize, layer: u32) -> bool {
+/// Whether the output needs this map of an object.
+fn is_requested(facts: &SceneFacts, object: usize, layer: u32) -> bool {
     match facts.output.receiver {
         None => true,
         Some(Receiver::Object(wanted)) => {
@@ -234,7 +235,7 @@ pub fn groups_of(compared: &[Compared]) -> u32 {
         .map_or(0, |last| last.comparison.first_group + last.groups())
 }
 
-/// Two fifths of the water cells along a side; fewer where that makes whole workgroups, a third at least.
+/// Cells along a side of the coarse grid: two fifths of the fine one's, rounded down to whole workgroups if at least a third remains.
 pub fn coarse_cells(facts: &SceneFacts) -> u32 {
     let fine = facts.quality.water_cells;
     let two_fifths = (2 * fine / 5).max(1);
@@ -246,10 +247,10 @@ pub fn coarse_cells(facts: &SceneFacts) -> u32 {
     }
 }
 
-/// The floor's map of the light that is done coarsely: where that divides evenly, half its texels along a side, and a quarter where those are
-/// still as many as the frame has water cells, because then only a few cells' light lies in a texel.
+/// The floor's map of the coarse beam sets. It has half the texels along a side where that divides evenly, or a quarter where that leaves
+/// at least as many texels as the frame has water cells, because then the light of only a few cells falls into a texel.
 ///
-/// A view's map is always halved, since it is looked up between its texels.
+/// A view's map is always halved, since it is interpolated between its texels.
 pub fn coarse_floor_map(facts: &SceneFacts) -> Option<FloorMap> {
     let map = facts.receivers.floor_map?;
     let sides = [map.width, map.height];
@@ -276,9 +277,9 @@ pub fn coarse_floor_map(facts: &SceneFacts) -> Option<FloorMap> {
 }
 
 impl SceneFacts {
-    /// The same scene for a light that is done coarsely: with [fewer water cells](coarse_cells) and a [smaller map of the
-    /// floor](coarse_floor_map). So it is a ninth to a sixth of the cells' work, but of the texels' a sixteenth or a quarter, and all of it
-    /// of meshes' maps and where the floor's do not divide.
+    /// The same scene for coarse beam sets: with [fewer water cells](coarse_cells) and a [smaller map of the
+    /// floor](coarse_floor_map). The work per cell falls to between a ninth and a sixth. The work per texel of the floor falls to a quarter
+    /// or a sixteenth, but stays whole where its size does not divide; meshes' maps keep their size.
     ///
     /// Beams that straddle receivers are halved once less.
     #[must_use]

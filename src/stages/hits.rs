@@ -1,5 +1,5 @@
-//! Hits — what each ray strikes first: the floor exactly, meshes by marching into their level maps, and by
-//! their triangles where those have edges; the nearest wins.
+//! Hits — the first receiver that each ray hits. The floor is intersected exactly; meshes by marching into their level maps, and by
+//! their triangles where a level map has an edge. The nearest hit wins.
 
 use super::beams::BEAMS;
 use super::level_map::LEVEL_MAPS;
@@ -26,6 +26,6 @@ pub static PASS: Pass = Pass {
     uniforms: &[("light", Light::LAYOUT)],
     wanted: wanted_for_light,
     steps: Steps::BeamSet(|facts, set| grid_step("hits_main", facts, set)),
-    // A ray looks at the objects over its way, which the hierarchy over them finds: between some and all of a row of them.
+    // A ray tests the objects that the hierarchy finds along it: about the square root of their number.
     work: |facts| cells(facts) * (1.0 + (facts.wet_objects().count() as f64).sqrt()),
 };

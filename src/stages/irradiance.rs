@@ -1,4 +1,4 @@
-//! Irradiance — turns a light's flux sums into W/m², and adds them to the floor's map.
+//! Irradiance — converts a beam set's flux sums to W/m² and adds them to the irradiance maps.
 
 use super::gpu_values::vec4;
 use super::light::{Light, light_uniform};
@@ -58,7 +58,7 @@ pub static PASS: Pass = Pass {
     work: texels,
 };
 
-/// How many maps of objects there are, and how large.
+/// Number and size of the objects' maps, in words.
 fn object_maps(facts: &SceneFacts) -> Option<String> {
     let all = match facts.output.receiver {
         None => facts.wet_objects().count() as u32 * facts.quality.layers,
@@ -81,18 +81,18 @@ fn object_maps(facts: &SceneFacts) -> Option<String> {
     ))
 }
 
-/// One piece of a light's flux sums that becomes W/m² in one dispatch.
+/// A range of a light's flux sums that one dispatch converts to W/m².
 struct Piece {
     first_texel: u32,
     texels: u32,
     first_output: u32,
     density_per_flux: f32,
-    /// Receivers whose maps it holds; 0: it is one map with the density above.
+    /// Number of receivers whose maps it holds; 0: it is one map with the density above.
     receivers: u32,
 }
 
-/// The pieces that anything reads: a camera the floor's map and those of all objects, which lie one behind the other; a map is of
-/// one receiver.
+/// The ranges that the output needs. A camera needs the floor's map and the maps of all objects, which lie one behind the other; an
+/// irradiance map is of one receiver.
 fn pieces(facts: &SceneFacts, index: usize) -> Vec<Piece> {
     let light = facts.lights.beam_sets[index].light;
     let all = receivers(facts, light, |_| 0);
@@ -129,7 +129,7 @@ fn pieces(facts: &SceneFacts, index: usize) -> Vec<Piece> {
     wanted.filter(|piece| piece.texels > 0).collect()
 }
 
-/// One dispatch per piece of a light's flux sums that is asked for.
+/// One dispatch per requested range of a light's flux sums.
 fn resolve_steps(facts: &SceneFacts, set: BeamSetRun) -> Vec<Step> {
     let index = set.index;
     let mut steps = Vec::new();
@@ -140,7 +140,7 @@ fn resolve_steps(facts: &SceneFacts, set: BeamSetRun) -> Vec<Step> {
             first_texel: piece.first_texel,
             texel_count: piece.texels,
             first_output: piece.first_output,
-            // Every beam set adds to the floor's map, those of a light to its maps of objects.
+            // All beam sets add to the floor's map; the beam sets of a light add to its maps of objects.
             adds: u32::from(if is_floor {
                 index > 0
             } else {

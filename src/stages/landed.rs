@@ -1,4 +1,4 @@
-//! Landed — sums what lies on a beam set's maps, for the energy account; narrow sums that have wrapped show here.
+//! Landed — sums the flux on a beam set's maps for the energy account. If narrow sums have wrapped, flux is missing here.
 
 use super::light::{Light, light_uniform};
 use super::maps::MapLayout;

@@ -1,5 +1,5 @@
-//! Level map — draws what a light sees of a mesh through flat water (Tipprasert 2006, §4.2): front, back, normals; then layer by layer
-//! what lies behind (depth peeling: Everitt, Interactive Order-Independent Transparency, 2001).
+//! Level map — draws the mesh's surface visible from a light through flat water (Tipprasert 2006, §4.2): front depth, back depth, normals;
+//! then the layers behind it, one by one (depth peeling: Everitt, Interactive Order-Independent Transparency, 2001).
 
 use wgpu::{
     CompareFunction, PrimitiveTopology, TextureFormat, TextureUsages, TextureViewDimension,
@@ -14,7 +14,7 @@ use crate::facts::placement::LevelBox;
 use crate::gpu_struct;
 use crate::graph::{Color, Depth, Draw, Origin, Texture, View};
 
-/// Depth a level map is cleared to where there is nothing, as in the shaders.
+/// Depth of an empty texel of a level map, as in the shaders.
 pub const EMPTY_DEPTH: f64 = 1e30;
 
 gpu_struct! {
@@ -35,7 +35,7 @@ gpu_struct! {
     }
 }
 
-/// A level map that is to be built.
+/// Parameters of a run that builds a level map.
 #[derive(Clone, Debug)]
 pub struct LevelMapRun {
     /// The map's box.
@@ -44,7 +44,7 @@ pub struct LevelMapRun {
     pub arena_offset: u32,
     /// Where the mesh's triangles begin, in 16-byte units of the geometry.
     pub first_triangle: u32,
-    /// How many there are.
+    /// Number of triangles.
     pub triangles: u32,
 }
 
@@ -58,7 +58,7 @@ pub static LEVEL_MAPS: Slot = Slot {
     )
 };
 
-/// A texture as large as the largest level map of the scene, with so many layers.
+/// A render target of the extent that `extent` gives for a scene.
 const fn target(
     format: TextureFormat,
     extent: fn(&SceneFacts) -> [u32; 3],
@@ -104,7 +104,7 @@ pub static BACK_DEPTH: Slot = Slot::texture(
     "depth of a level map's farthest surface, units of its box",
     target(TextureFormat::R32Float, one_layer),
 );
-/// Normal of the farthest surface, which nobody reads.
+/// Normal of the farthest surface; unused.
 pub static BACK_NORMAL: Slot = Slot::texture(
     "back_normal",
     "packed normal of a level map's farthest surface",
@@ -180,7 +180,7 @@ pub static PASS: Pass = Pass {
     work,
 };
 
-/// Front and back of the largest map, and once more for each further layer.
+/// Work for front and back of the largest map, and for each further layer.
 pub(super) fn work(facts: &SceneFacts) -> f64 {
     let objects = facts.receivers.objects.iter();
     let texels = objects.map(|o| f64::from(o.map_texels).powi(2));
@@ -230,7 +230,7 @@ fn draw(
     }
 }
 
-/// Level maps are in when light meets objects under water.
+/// The reason why level maps are needed: light falls on objects under water.
 pub fn wanted_for_objects(facts: &SceneFacts) -> Result<String, String> {
     let wet = facts.wet_objects().count();
     if wet == 0 {

@@ -1,5 +1,5 @@
-//! Level map pyramid — stores a drawn level map in the arena and halves it down to one texel, keeping least front and largest
-//! back, so that rays pass empty space in large steps; further layers are stored as they are.
+//! Level map pyramid — stores a drawn level map in the arena and halves it down to one texel, keeping the least front and the largest
+//! back depth, so that rays cross empty space in large steps. Further layers are stored at full resolution only.
 
 use super::level_map::{
     BACK_DEPTH, FRONT_DEPTH, FRONT_NORMAL, LAYER_DEPTH, LAYER_NORMAL, LEVEL_MAPS, LevelMapView,

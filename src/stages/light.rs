@@ -1,4 +1,4 @@
-//! What the passes that follow a beam set share: its uniform, and the scales of its sums.
+//! Shared by the passes that trace a beam set: its uniform, and the fixed-point scales of its sums.
 //!
 //! Flux is counted per unit power: a sun's in m² under 1 W/m², a point light's in sr at 1 W/sr.
 
@@ -44,39 +44,39 @@ gpu_struct! {
     }
 }
 
-/// Footprints of more texels than this get workgroups of their own.
+/// Footprints of more texels than this are shared by several workgroups.
 const WIDE_TEXELS: u32 = 1024;
-/// Counts that the largest possible beam makes in narrow sums: 2³⁰, so that a deposit fits u32 with room for rounding.
+/// Largest number of counts of one beam in narrow sums: 2³⁰, so that a deposit fits u32 with room for rounding.
 const BEAM_COUNTS: f64 = 1_073_741_824.0;
 /// The same in wide sums: 2⁴⁰, so that all beams of the finest grid (2 · 2048²) fit 63 bits together.
 const WIDE_BEAM_COUNTS: f64 = 1_099_511_627_776.0;
-/// Fewest counts in narrow sums of the largest beam, and of an evenly lit texel of the coarsest map: what is all alike all
-/// rounds the same way, by up to half a count.
+/// Fewest counts in narrow sums of the largest beam, and of an evenly lit texel of the coarsest map. Equal deposits round the same way,
+/// by up to half a count, so their rounding errors add up.
 const FINE_COUNTS: f64 = 65_536.0;
-/// Fewest counts of an evenly lit texel of the finest map; less, because a small object in a wide pool is common and must not
-/// make everything dear.
+/// Fewest counts of an evenly lit texel of the finest map. Fewer than above, because a small object in a wide pool is common and must
+/// not force the more expensive wide sums.
 const FINEST_MAP_COUNTS: f64 = 4096.0;
 /// Fewest counts of the mean beam of a point light in narrow sums.
 const MEAN_BEAM_COUNTS: f64 = 16_384.0;
-/// Fewest counts of the smallest part of the largest beam that straddles receivers: less would be lost to rounding.
+/// Fewest counts of the smallest part of the largest beam that straddles receivers: with fewer it would be lost to rounding.
 const PART_COUNTS: f64 = 64.0;
-/// Where a narrow sum wraps.
+/// Counts at which a narrow sum wraps: 2³².
 const WRAP_COUNTS: f64 = 4_294_967_296.0;
-/// Times an evenly lit texel's flux that a narrow sum holds.
+/// Capacity of a narrow sum, as a multiple of an evenly lit texel's flux.
 const NARROW_HEADROOM: f64 = 1024.0;
-/// The same in the account of a workgroup, whose 128 beams must fit u32 together.
+/// Largest number of counts of one beam in the account of a workgroup, whose 128 beams must fit u32 together.
 const BEAM_ACCOUNT_COUNTS: f64 = 8_388_608.0;
 
-/// Pieces of the grid along one axis in which the largest beam is looked for.
+/// Intervals along each axis of the grid in which the largest beam is searched.
 const PIECES: u32 = 24;
-/// More than all beams of a point light together: all directions, as often as waves could stand behind waves.
+/// Upper bound of the sum of all beams of a point light, sr: all directions, 1024 times over, since a ray may cross several waves.
 const MOST_LAMP_SR: f64 = 1024.0 * 2.0 * TAU;
-/// Below this the scales would leave the range of f32; such a light brings nothing that could be seen.
+/// Least beam that is used for scales, sr: smaller ones would leave the range of f32, and their light is invisible.
 const LEAST_BEAM_SR: f64 = 1e-20;
-/// Largest solid angle per area of the octahedral square, sr, and half as much again for triangles bent over its edges.
+/// Largest solid angle per area of the octahedral square, sr, times 1.5 for triangles bent over its edges.
 const OCTAHEDRAL_SR: f64 = 1.5 * 5.196_152_422_706_632;
 
-/// Flux that one beam can carry at most from a light of unit power.
+/// Largest flux that one beam can carry from a light of unit power.
 fn largest_beam(facts: &SceneFacts, light: &BeamSet) -> f64 {
     let cell = light.grid.places.size() / f64::from(facts.quality.water_cells);
     match light.source {
@@ -89,8 +89,8 @@ fn largest_beam(facts: &SceneFacts, light: &BeamSet) -> f64 {
     }
 }
 
-/// Most of a light's flux that any water lets through: near the horizon little, and what is summed has to count that finely. 1 of a point
-/// light, and where nothing goes through.
+/// Largest Fresnel transmittance over all slopes of the water. It is small for a sun near the horizon, and the sums must then count
+/// finely enough for that. 1 for a point light, and where no light enters at all.
 fn brightest_transmittance(facts: &SceneFacts, light: &BeamSet) -> f64 {
     let Source::Sun { to_light } = light.source else {
         return 1.0;
@@ -101,11 +101,11 @@ fn brightest_transmittance(facts: &SceneFacts, light: &BeamSet) -> f64 {
     if most > 0.0 { most } else { 1.0 }
 }
 
-/// Largest solid angle of half a cell, sr: its area seen from the light's height and the steepest slope, over the square of its least
-/// distance, and never more than half of all directions.
+/// Upper bound of the solid angle of half a cell, sr: its projected area for the light's height and the steepest slope, over the square
+/// of its least distance; at most half of all directions.
 fn lamp_beam(facts: &SceneFacts, light: &BeamSet, position_m: DVec3, cell: DVec2) -> f64 {
     let grid = &light.grid;
-    // Per piece of an axis: the largest cell side in it, and its least distance from the light's foot.
+    // Per interval of an axis: the largest cell side in it, and its least distance from the light's foot.
     let pieces = |axis: usize| -> Vec<(f64, f64)> {
         let (low, high) = (grid.places.min[axis], grid.places.max[axis]);
         let foot_m = [position_m.x, position_m.z][axis];
@@ -132,7 +132,7 @@ fn lamp_beam(facts: &SceneFacts, light: &BeamSet, position_m: DVec3, cell: DVec2
     for &(side_x, near_x) in &along_x {
         for &(side_z, near_z) in &along_z {
             let distance_m = rise_m.hypot(near_x.hypot(near_z));
-            // Written so that no distance at all counts as half of all directions.
+            // Written so that a distance of 0 counts as half of all directions.
             let facing =
                 ((position_m.y + crest_m) / distance_m + steepest).min(steepest.hypot(1.0));
             let area = 0.5 * side_x * side_z * facing;
@@ -206,8 +206,8 @@ pub fn energy_scale(facts: &SceneFacts, index: usize) -> f64 {
 
 /// Counts per unit flux in the flux sums; a power of two.
 ///
-/// Wide sums take the largest beam at 2⁴⁰. Narrow ones take it at 2³⁰ at most and leave room for [`NARROW_HEADROOM`] times the
-/// flux of an evenly lit texel.
+/// In wide sums the largest beam makes 2⁴⁰ counts. In narrow ones it makes 2³⁰ at most, and there is room for [`NARROW_HEADROOM`] times
+/// the flux of an evenly lit texel.
 pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
     let light = &facts.lights.beam_sets[index];
     let beam = largest_beam(facts, light) * brightest_transmittance(facts, light);
@@ -221,7 +221,7 @@ pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
     narrow.min(BEAM_COUNTS / beam).log2().floor().exp2()
 }
 
-/// Flux of a texel of a map under flat water as transparent as its most transparent slope, and a light of unit power.
+/// Flux of a map's texel from a light of unit power, under flat water with the transmittance of the most transparent slope.
 struct TexelFlux {
     /// Where the light is nearest.
     brightest: f64,
@@ -229,7 +229,7 @@ struct TexelFlux {
     mean: f64,
 }
 
-/// That of each map that is asked for.
+/// The texel flux of each requested map.
 fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelFlux> {
     let light = &facts.lights.beam_sets[index];
     let transmittance = brightest_transmittance(facts, light);
@@ -247,7 +247,7 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
         }
     });
     let maps = MapLayout::of(facts);
-    let is_asked = move |object: usize| {
+    let is_requested = move |object: usize| {
         let layers = facts.quality.layers;
         (0..layers).any(|layer| maps.holds(object, layer))
     };
@@ -257,33 +257,33 @@ fn texel_fluxes(facts: &SceneFacts, index: usize) -> impl Iterator<Item = TexelF
         .iter()
         .zip(&facts.receivers.objects)
         .enumerate();
-    let objects = objects.filter(move |(number, _)| is_asked(*number));
+    let objects = objects.filter(move |(number, _)| is_requested(*number));
     let objects = objects.filter_map(move |(_, (level_box, object))| {
         let area_m2 = 1.0 / level_box.as_ref()?.density_per_flux;
         let Some(position_m) = light.source.position_m() else {
             return Some(even(transmittance * area_m2));
         };
         let middle_m = object.wet_middle();
-        let rise_m = light.source.seeming_height_m(middle_m.y, light.band.ior);
-        let way_m = (middle_m - position_m).with_y(rise_m).length();
+        let rise_m = light.source.apparent_height_m(middle_m.y, light.band.ior);
+        let distance_m = (middle_m - position_m).with_y(rise_m).length();
         let radius_m = 0.5 * (object.max - object.min).length();
-        let near_m = (way_m - radius_m).max(0.1 * radius_m).max(1e-6);
+        let near_m = (distance_m - radius_m).max(0.1 * radius_m).max(1e-6);
         let share = |distance_m: f64| (area_m2 / (distance_m * distance_m)).min(TAU);
         Some(TexelFlux {
             brightest: share(near_m),
-            mean: share(way_m.max(near_m)),
+            mean: share(distance_m.max(near_m)),
         })
     });
     floor.into_iter().chain(objects)
 }
 
-/// A point light on the floor's map.
+/// Flux of a point light on a texel of the floor's map.
 fn lamp_on_floor(light: &BeamSet, rect: &Rect, y_m: f64, ior: f64, texels: f64) -> TexelFlux {
     let foot_m = light
         .source
         .position_m()
         .map_or(DVec2::ZERO, |p| DVec2::new(p.x, p.z));
-    let height_m = light.source.seeming_height_m(y_m, ior).max(1e-6);
+    let height_m = light.source.apparent_height_m(y_m, ior).max(1e-6);
     let (low, high) = (rect.min - foot_m, rect.max - foot_m);
     let corner = DVec3::new(low.x, -height_m, low.y);
     let (along_x, along_z) = (DVec3::X * (high.x - low.x), DVec3::Z * (high.y - low.y));
@@ -301,7 +301,7 @@ fn lamp_on_floor(light: &BeamSet, rect: &Rect, y_m: f64, ior: f64, texels: f64) 
     }
 }
 
-/// Solid angle of the water's window at rest, seen from a point light above it; of all directions for one under it.
+/// Solid angle of the window of the water at rest, seen from a point light above it; all directions for a light under water, sr.
 fn entering_sr(light: &BeamSet) -> f64 {
     let Source::Point { position_m } = light.source else {
         return 2.0 * TAU;
@@ -315,10 +315,10 @@ fn entering_sr(light: &BeamSet) -> f64 {
     (near + far).abs()
 }
 
-/// Whether narrow sums would be too coarse for a light from the start: very many beams on a texel, texels under a beam, beams
-/// in very small parts, or beams that a low sun's reflection leaves little of.
+/// Whether narrow sums are known to be too coarse for a light: very many beams per texel or texels per beam, beams split into very small
+/// parts, or a low sun whose light is mostly reflected.
 pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
-    // Where what lands is not what rays take away, a sum that has wrapped would not be told from that.
+    // If the method does not conserve energy, a wrapped sum cannot be distinguished from the method's own surplus.
     if !facts.method.conserves_energy && facts.wet_objects().next().is_some() {
         return true;
     }
@@ -333,7 +333,7 @@ pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
     };
     let light = &facts.lights.beam_sets[index];
     let beams = 2.0 * f64::from(facts.quality.water_cells).powi(2);
-    // To a near light most beams are far smaller than the largest.
+    // For a near light most beams are far smaller than the largest one.
     if matches!(light.source, Source::Point { .. })
         && scale * entering_sr(light) / beams < MEAN_BEAM_COUNTS
     {
@@ -345,7 +345,7 @@ pub fn needs_wide_sums(facts: &SceneFacts, index: usize) -> bool {
         || scale * finest < FINEST_MAP_COUNTS
 }
 
-/// Whether narrow sums of a light have wrapped: what landed is then short by at least one whole 2³² counts.
+/// Whether narrow sums of a light have wrapped: then the landed flux is short by at least 2³² counts.
 pub fn has_wrapped(facts: &SceneFacts, index: usize, missing: f64) -> bool {
     missing > 0.5 * WRAP_COUNTS / flux_scale(facts, index, false)
 }

@@ -1,15 +1,15 @@
 //! Where the irradiance maps of the receivers lie in the arrays that hold them all.
 //!
-//! In the flux sums of a light: the floor's map, then for each wet object its layers, nearest first. In the irradiance array: the
-//! floor's map, to which every light adds, then the objects' maps of the first light, of the second, and so on. Maps that nobody asks
-//! for have no place: what lands there goes straight into the account.
+//! The flux sums of a light hold the floor's map, then for each wet object its layers, nearest first. The irradiance array holds the
+//! floor's map, to which every light adds, then the objects' maps of the first light, of the second, and so on. Maps that the output
+//! does not need have no place: light that lands there only enters the energy account.
 
 use std::ops::Range;
 
 use crate::facts::{FloorMap, SceneFacts};
 use crate::scene::Receiver;
 
-/// Where a map lies that nobody asks for, as in `shaders/shared/receivers.wgsl`.
+/// Offset of a map that is not requested, as in `shaders/shared/receivers.wgsl`.
 pub const NOWHERE: u32 = u32::MAX;
 
 /// The maps of an object.
@@ -19,7 +19,7 @@ struct ObjectMaps {
     first: u64,
     /// Texels of a layer; of a dry object 0.
     texels: u64,
-    /// The layers that are asked for.
+    /// The requested layers.
     layers: Range<u32>,
 }
 
@@ -57,7 +57,7 @@ impl MapLayout {
                 let maps = ObjectMaps {
                     first: end,
                     texels: side * side,
-                    layers: asked_layers(facts, number),
+                    layers: requested_layers(facts, number),
                 };
                 end += maps.layers.len() as u64 * maps.texels;
                 maps
@@ -71,7 +71,7 @@ impl MapLayout {
         }
     }
 
-    /// Texels, behind the flux sums of a light, of the caustics map of one plane: as many as the largest object's map has.
+    /// Texels of the caustics map of one plane, which lies behind the flux sums of a light: as many as the largest object's map has.
     pub fn scratch_texels(&self) -> u64 {
         self.objects
             .iter()
@@ -80,7 +80,7 @@ impl MapLayout {
             .unwrap_or(0)
     }
 
-    /// The first of those.
+    /// First texel of that map.
     pub fn scratch(&self) -> u32 {
         narrow(self.flux_texels())
     }
@@ -100,17 +100,17 @@ impl MapLayout {
         self.floor + self.per_light * self.lights
     }
 
-    /// Whether a layer of an object is asked for.
+    /// Whether a layer of an object is requested.
     pub fn holds(&self, object: usize, layer: u32) -> bool {
         self.objects[object].layers.contains(&layer)
     }
 
-    /// First texel of a layer of an object in the flux sums; [`NOWHERE`] for one that nobody asks for.
+    /// First texel of a layer of an object in the flux sums; [`NOWHERE`] if the layer is not requested.
     pub fn flux_of(&self, object: usize, layer: u32) -> u32 {
         self.place(object, layer).map_or(NOWHERE, narrow)
     }
 
-    /// First texel of a layer of an object under light number `light` in the irradiance array; [`NOWHERE`] for one that nobody asks for.
+    /// First texel of a layer of an object under light number `light` in the irradiance array; [`NOWHERE`] if it is not requested.
     pub fn irradiance_of(&self, light: usize, object: usize, layer: u32) -> u32 {
         let place = self.place(object, layer);
         place.map_or(NOWHERE, |first| {
@@ -126,9 +126,9 @@ impl MapLayout {
     }
 }
 
-/// Layers of an object that are read by anyone: a camera reads all, an irradiance map is one. Where the method lays light on meshes
-/// itself, it lights all that rays stop at.
-fn asked_layers(facts: &SceneFacts, object: usize) -> Range<u32> {
+/// Layers of an object that the output reads: a camera reads all, an irradiance map is one. A method that does not light meshes by hits
+/// needs all of them, because it lights every object that its rays hit.
+fn requested_layers(facts: &SceneFacts, object: usize) -> Range<u32> {
     if !facts.method.lights_meshes_by_hits {
         return 0..facts.quality.layers;
     }
@@ -141,7 +141,7 @@ fn asked_layers(facts: &SceneFacts, object: usize) -> Range<u32> {
     }
 }
 
-/// Buffers this long are refused before anything runs.
+/// Buffers too long for u32 are refused before anything runs.
 fn narrow(texel: u64) -> u32 {
     u32::try_from(texel).unwrap_or(NOWHERE)
 }

@@ -1,16 +1,16 @@
-//! Passes that several methods share, and what flows between them. Each file holds a pass with its slots and structs; its shader has
+//! Passes that several methods share, and the slots between them. Each file holds one pass with its slots and structs; its shader has
 //! the same name in `shaders/stages/`.
 //!
 //! | what | files |
 //! |---|---|
 //! | water and its rays | `surface` (the one to copy), `beams`, `hits`, `unfollowed` |
 //! | level maps | `level_map`, `level_map_pyramid` |
-//! | flux on receivers | `deposit`, `split`, `landed`, `irradiance`; `light`, `receivers`, `maps`, `sums`, `term`, `queues`: what they share |
-//! | what the camera or a map's texels see | `points`: the slot; `camera_hits` and `texel_points` fill it; `camera_irradiance`, `shade` |
-//! | the frame's estimate of its error | `coarse_irradiance`, `estimate` |
-//! | reference planes | `reference_planes`: what methods that slice objects share |
+//! | flux on receivers | `deposit`, `split`, `landed`, `irradiance`; shared by them: `light`, `receivers`, `maps`, `sums`, `term`, `queues` |
+//! | points that pixels see or texels lie at | `points`: the slot; `camera_hits` and `texel_points` fill it; `camera_irradiance`, `shade` |
+//! | the frame's estimate of its own error | `coarse_irradiance`, `estimate` |
+//! | reference planes | `reference_planes`: shared by methods that slice objects |
 //!
-//! Bindings are matched by name: a WGSL variable is called like the slot it binds.
+//! Bindings are matched by name: a WGSL variable has the name of the slot it binds.
 
 pub mod beams;
 pub mod camera_hits;
@@ -43,7 +43,7 @@ pub mod unfollowed;
 use crate::facts::SceneFacts;
 use crate::graph::{self, Program};
 
-/// This program, as the graph sees it.
+/// This program as an instance of the generic graph.
 #[derive(Clone, Copy, Debug)]
 pub struct Caustica;
 
@@ -75,7 +75,7 @@ pub static BEFORE_METHOD: [&Pass; 4] = [
     &beams::PASS,
 ];
 
-/// Passes that run when the method has made its maps: the estimate of the error, and the points of the picture.
+/// Passes that run after the method has made its maps: the estimate of the error, and the points of the picture.
 pub static AFTER_MAPS: [&Pass; 4] = [
     &coarse_irradiance::PASS,
     &estimate::PASS,
@@ -83,5 +83,5 @@ pub static AFTER_MAPS: [&Pass; 4] = [
     &texel_points::PASS,
 ];
 
-/// Passes that run last, when the light at the points is known or can be looked up.
+/// Passes that run last: the irradiance at the points, from the maps, and the picture.
 pub static PICTURE: [&Pass; 2] = [&camera_irradiance::PASS, &shade::PASS];

@@ -1,12 +1,12 @@
-//! Points: what pixels see, or where the texels of a map lie, so that methods which work per point serve pictures and maps alike.
+//! Points: the places that pixels see, or where the texels of a map lie. Methods that work per point thus serve pictures and maps alike.
 //!
-//! `camera_hits` fills them from pixels and `texel_points` from the texels of an irradiance map; both for the rows of a band.
+//! `camera_hits` fills them from pixels, `texel_points` from the texels of an irradiance map; both for the rows of a band.
 
 use super::Slot;
 use crate::facts::SceneFacts;
 use crate::gpu_struct;
 
-/// Most bytes per 16 of a pixel that a band of the picture takes.
+/// Largest size of a slot with 16 bytes per pixel for one band of the picture, bytes.
 pub const BAND_BYTES: u64 = 32 << 20;
 
 gpu_struct! {
@@ -36,7 +36,7 @@ pub static POINT_IRRADIANCE: Slot =
         16 * points_of_a_band(facts)
     });
 
-/// Columns and rows of what is looked at: the picture's pixels, or the texels of the map that is asked for.
+/// Columns and rows of the output: the picture's pixels, or the texels of the requested map.
 pub fn size(facts: &SceneFacts) -> Option<[u32; 2]> {
     if let Some(camera) = &facts.output.camera {
         return Some([camera.width, camera.height]);
@@ -59,7 +59,7 @@ pub(super) fn points_of_a_band(facts: &SceneFacts) -> u64 {
     })
 }
 
-/// Rows of a picture or map that are made at once.
+/// Rows of a picture or map that are rendered at once.
 pub fn band_rows(width: u32, height: u32) -> u32 {
     let rows = BAND_BYTES / (16 * u64::from(width.max(1)));
     u32::try_from(rows)

@@ -1,4 +1,4 @@
-//! Queues: buffers whose head says how many workgroups empty them; and how many workgroups a dispatch may have.
+//! Queues: buffers whose head holds the size of the dispatch that empties them. Also the limit on workgroups of a dispatch.
 
 use super::Groups;
 
@@ -11,8 +11,8 @@ pub const MOST_GROUPS: u32 = 65_535;
 /// Workgroups that share one wide footprint.
 pub const WIDE_GROUPS: u32 = 16;
 
-/// A dispatch of so many workgroups in a row, which may be more than fit one axis: then in rows of the same length. Shaders pass over the
-/// last ones.
+/// A dispatch of at least `groups` workgroups. If they do not fit one axis, they are arranged in rows of equal length; shaders skip the
+/// surplus at the end.
 pub fn in_columns(groups: u32) -> Groups {
     let rows = groups.div_ceil(MOST_GROUPS).max(1);
     Groups::Direct([groups.div_ceil(rows).max(1), rows, 1])

@@ -1,4 +1,4 @@
-//! The receivers of light: the floor, and each layer of each object, with where their maps lie.
+//! The receivers of light, and where their maps lie: the floor, and each layer of each object.
 
 use glam::DVec2;
 
@@ -34,13 +34,13 @@ gpu_struct! {
     }
 }
 
-/// Receivers of the light at work.
+/// Receivers of the current light.
 pub static RECEIVERS: Slot = Slot {
     origin: Origin::Host,
     element: Some(Receiver::LAYOUT),
     ..Slot::buffer(
         "receivers",
-        "map of each receiver for the light at work",
+        "map of each receiver for the current light",
         bytes_of_a_light,
     )
 };
@@ -63,8 +63,8 @@ fn bytes_of_a_light(facts: &SceneFacts) -> u64 {
     size_of::<Receiver>() as u64 * receivers
 }
 
-/// The receivers of lit light number `light`: the floor, then those of the objects, one per layer; `level_map_offset` tells where in the arena an
-/// object's map lies.
+/// The receivers of lit light number `light`: the floor, then one per layer of each object. `level_map_offset` gives the place of an
+/// object's level map in the arena.
 pub fn receivers(
     facts: &SceneFacts,
     light: usize,
@@ -75,7 +75,7 @@ pub fn receivers(
     let layers = facts.quality.layers;
     for (object, level_box) in facts.lights.lit[light].boxes.iter().enumerate() {
         let Some(level_box) = level_box else {
-            // Without texels, but in its place: `density_at` in the shaders looks receivers up by where their maps begin.
+            // A dry object has no texels but keeps its place: `density_at` in the shaders searches receivers by the start of their maps.
             all.extend((0..layers).map(|layer| Receiver {
                 map_offset: maps.flux_of(object, layer),
                 layer,

@@ -1,4 +1,5 @@
-//! What the passes that place light by planes share: their uniform, and the steps that find the beams that may reach an object.
+//! Shared by the passes that place light by reference planes: their uniform, and the steps that find the beams that may reach an
+//! object.
 
 use super::level_map::wanted_for_objects;
 use super::light::light_uniform;
@@ -13,7 +14,7 @@ use crate::graph::{BeamSetRun, Clear};
 pub const CULL_HEAD_WORDS: u64 = 2 * QUEUE_HEAD_WORDS;
 /// Words at the head of an object's list of planes.
 pub const PLANE_LIST_HEAD_WORDS: u64 = 4;
-/// Texels along a side of the tiles that the list of planes knows the near planes of.
+/// Texels along a side of a tile; the list of planes holds, for each tile, the planes near its surface.
 pub const PLANE_TILE_TEXELS: u32 = 4;
 /// Word of the beam queue where the dispatch over beams with wide footprints lies.
 pub const WIDE_DISPATCH: u32 = 4;
@@ -38,7 +39,7 @@ pub static BEAM_QUEUE: Slot = Slot {
     clear: Clear::Head(&super::queues::EMPTY_QUEUE),
     ..Slot::buffer(
         "beam_queue",
-        "beams that may reach the object at work",
+        "beams that may reach the current object",
         |facts| 4 * (CULL_HEAD_WORDS + 2 * u64::from(facts.quality.water_cells).pow(2)),
     )
 };
@@ -53,7 +54,7 @@ pub static PLANE_LISTS: Slot = Slot {
     )
 };
 
-/// How many beams and planes those were.
+/// Number of beams and planes that were used.
 pub static PLANE_COUNTS: Slot = Slot::buffer(
     "plane_counts",
     "beams kept, planes used and pieces of the box per object",
@@ -108,7 +109,7 @@ pub fn plane_uniforms(
     ]
 }
 
-/// Queues the beams that may reach an object, and shares the dispatches out over them (`share_out` is the pass's own entry point).
+/// Queues the beams that may reach an object and sizes the dispatches over them (`share_out` is the pass's own entry point).
 pub fn cull_steps(
     facts: &SceneFacts,
     set: BeamSetRun,
@@ -141,7 +142,7 @@ pub fn over_queue(
     [step(narrow, 0), step(wide, WIDE_DISPATCH)]
 }
 
-/// Passes that lay light on objects by planes are in when light meets objects under water.
+/// The reason why passes that place light by planes run: light falls on objects under water.
 pub fn wanted_for_planes(facts: &SceneFacts) -> Result<String, String> {
     wanted_for_objects(facts)
 }

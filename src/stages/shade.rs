@@ -25,7 +25,7 @@ pub static PASS: Pass = Pass {
     wanted: |facts| {
         wanted_for_camera(facts)?;
         if facts.output.wants(LayerName::Radiance) {
-            Ok("the radiance layer is asked for".to_owned())
+            Ok("the radiance layer is requested".to_owned())
         } else {
             Err("radiance is not among the layers".to_owned())
         }

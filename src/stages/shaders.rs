@@ -1,4 +1,4 @@
-//! The WGSL files that are built into the program: those that methods share. A method lists its own.
+//! The WGSL files that methods share, embedded in the program. Each method lists its own files.
 
 /// Paths below `shaders/` with the text of each file.
 pub type Embedded = &'static [(&'static str, &'static str)];

@@ -1,5 +1,5 @@
-//! Split — halves beams whose corners end on different receivers, with rays of their own: a dispatch per halving, which queues the
-//! parts that still straddle for the next one.
+//! Split — halves the sides of beams whose corners end on different receivers, and traces the new corners. One dispatch per halving
+//! level; parts that still straddle receivers are queued for the next level.
 
 use super::level_map::LEVEL_MAPS;
 use super::light::{Light, light_uniform};
@@ -12,14 +12,14 @@ use crate::facts::SceneFacts;
 use crate::gpu_struct;
 use crate::graph::Clear;
 
-/// Words at the head of the split queue, whose levels have counts of their own.
+/// Words at the head of the split queue, which has a count per level.
 pub const SPLIT_HEAD_WORDS: u64 = 16;
-/// First of the words in that head that are the dispatch over wide footprints; before it is their count.
+/// Word of that head where the dispatch over wide footprints begins; the word before it is their count.
 pub const SPLIT_WIDE_WORD: u32 = 13;
-/// Parts of straddling beams that a level of the split queue holds, per cell along the window's side and for each doubling: enough
-/// for shadow edges that together are thirty times as long as the window's side.
+/// Capacity of a level of the split queue in parts, per cell along the window's side and times 2^`split_levels`. Enough for shadow edges
+/// whose total length is thirty times the window's side.
 const PARTS_PER_CELL: u64 = 64;
-/// Most parts that a level of the split queue holds: 32 MiB of them.
+/// Largest capacity of a level of the split queue, in parts: 32 MiB.
 const MOST_PARTS: u64 = 1 << 22;
 
 gpu_struct! {
@@ -95,7 +95,7 @@ pub static PASS: Pass = Pass {
             .chain([step("split_wide", SPLIT_WIDE_WORD, 0)])
             .collect()
     }),
-    // Parts along the shadows' edges, each with rays through the waves and down the meshes' hierarchies.
+    // Parts along the shadows' edges; each part evaluates the waves and traverses the meshes' hierarchies.
     work: |facts| {
         f64::from(facts.quality.water_cells)
             * f64::from(1_u32 << facts.quality.split_levels)
@@ -108,7 +108,7 @@ pub static PASS: Pass = Pass {
     },
 };
 
-/// Where halving number `level` finds its beams or parts, and where it leaves what straddles on.
+/// Where halving number `level` reads its beams or parts, and where it writes the parts that still straddle.
 fn level_of(facts: &SceneFacts, level: u32) -> Split {
     let capacity = split_parts(facts);
     let beams = SPLIT_HEAD_WORDS as u32;
@@ -126,15 +126,15 @@ fn level_of(facts: &SceneFacts, level: u32) -> Split {
     }
 }
 
-/// Parts of straddling beams that a level of the split queue holds: what has been halved less than `split_levels` times is queued,
-/// and about twice as many parts straddle with each halving.
+/// Capacity of a level of the split queue, in parts. Parts that were halved fewer than `split_levels` times are queued, and about twice
+/// as many parts straddle after each halving.
 pub fn split_parts(facts: &SceneFacts) -> u32 {
     let levels = facts.quality.split_levels;
     if levels < 2 || facts.wet_objects().next().is_none() {
         return 0;
     }
     let cells = u64::from(facts.quality.water_cells);
-    // A level is opened only if it fits even where all four parts of each straddle.
+    // A level runs only if its queue could hold all four parts of every item.
     let all = (2 * cells * cells) << (2 * (levels - 1));
     let parts = ((PARTS_PER_CELL * cells) << levels)
         .min(all)
@@ -142,7 +142,7 @@ pub fn split_parts(facts: &SceneFacts) -> u32 {
     u32::try_from(parts).unwrap_or(u32::MAX)
 }
 
-/// Footprints of straddling beams that are queued for workgroups of their own: no more than there are beams and parts.
+/// Capacity of the queue of wide footprints of straddling beams: the number of beams and parts.
 pub fn split_wides(facts: &SceneFacts) -> u32 {
     if facts.wet_objects().next().is_none() {
         return 0;
@@ -151,7 +151,7 @@ pub fn split_wides(facts: &SceneFacts) -> u32 {
     (2 * cells * cells).saturating_add(split_parts(facts))
 }
 
-/// Length of the shadows' edges, in sides of the beam sets' windows.
+/// Length of the shadows' edges, in units of the side of the widest window.
 fn edges(facts: &SceneFacts) -> f64 {
     let around_m: f64 = facts
         .wet_objects()

@@ -1,11 +1,11 @@
-//! What beams leave: flux sums per texel, and the energy account.
+//! Sums that beams add to: flux per texel, and the energy account.
 
 use super::Slot;
 use super::maps::MapLayout;
 use crate::facts::SceneFacts;
 use crate::graph::Clear;
 
-/// (low, high) pairs of the energy account, see `shaders/shared/flux.wgsl`.
+/// Number of (low, high) pairs in the energy account, see `shaders/shared/flux.wgsl`.
 pub const ENERGY_TERMS: u64 = 18;
 
 /// Flux sums of a beam set.
@@ -28,7 +28,7 @@ pub static ENERGY: Slot = Slot {
     )
 };
 
-/// Bytes of a beam set's flux sums, and of what a method adds up behind them.
+/// Bytes of a beam set's flux sums, and of the scratch map that a method may have behind them.
 pub fn flux_bytes(facts: &SceneFacts, wide_sums: bool) -> u64 {
     let maps = MapLayout::of(facts);
     let scratch = if facts.method.has_scratch_map {
@@ -40,7 +40,7 @@ pub fn flux_bytes(facts: &SceneFacts, wide_sums: bool) -> u64 {
     bytes * u64::from(facts.channels()) * (maps.flux_texels() + scratch)
 }
 
-/// What a texel of the flux sums costs: each has its share of setting up, and each channel its sums.
+/// Relative cost of a texel of the flux sums: a fixed part, and a part per channel.
 pub(super) fn cost_of_channels(facts: &SceneFacts) -> f64 {
     0.6 + 0.4 * f64::from(facts.channels())
 }

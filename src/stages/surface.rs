@@ -47,7 +47,7 @@ pub static PASS: Pass = Pass {
     wanted: wanted_for_light,
     steps: Steps::BeamSet(|facts, set| {
         if facts.lights.beam_sets[set.index].is_submerged() {
-            // Its rays start at the light and pass no surface.
+            // Its rays start at the light and cross no surface.
             return Vec::new();
         }
         grid_step("surface_main", facts, set)
@@ -60,15 +60,15 @@ pub(super) fn vertices(facts: &SceneFacts) -> u64 {
     (u64::from(facts.quality.water_cells) + 1).pow(2)
 }
 
-/// Cells of the water grid, as work.
+/// Number of cells of the water grid, as a measure of work.
 pub(super) fn cells(facts: &SceneFacts) -> f64 {
     f64::from(facts.quality.water_cells).powi(2)
 }
 
-/// Passes that follow a light are in when there is one and something under water waits for it.
+/// The reason why passes that trace light run: a receiver under water needs light, and some light reaches it.
 pub fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
     if !facts.has_receiver() {
-        return Err("nothing under water is to be lit".to_owned());
+        return Err("nothing under water needs light".to_owned());
     }
     if facts.lights.lit.is_empty() {
         return Err("no sun above the horizon and no point light shines into the water".to_owned());
@@ -96,8 +96,8 @@ pub fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
     .collect();
     let under = count(
         |s| matches!(s, Source::Submerged { .. }),
-        "light shines under the water, through no surface",
-        "lights shine under the water, through no surface",
+        "light is under water, so its rays cross no surface",
+        "lights are under water, so their rays cross no surface",
     );
     if over.is_empty() {
         return Ok(under.unwrap_or_default());

@@ -1,7 +1,7 @@
-//! Texel points — where the texels of an irradiance map lie, for methods that find the light at points.
+//! Texel points — where the texels of an irradiance map lie, for methods that compute irradiance at points.
 
 use super::level_map::LEVEL_MAPS;
-use super::objects::{GEOMETRY, INSTANCES};
+use super::objects::INSTANCES;
 use super::points::{POINTS, points_of_a_band, size};
 use super::receivers::ALL_RECEIVERS;
 use super::{Groups, Pass, Step, Steps};
@@ -28,13 +28,13 @@ pub static PASS: Pass = Pass {
     name: "texel_points",
     shader: "stages/texel_points.wgsl",
     reads: &[&ALL_RECEIVERS],
-    reads_if_present: &[&LEVEL_MAPS, &GEOMETRY, &INSTANCES],
+    reads_if_present: &[&LEVEL_MAPS, &INSTANCES],
     writes: &[&POINTS],
     uniforms: &[("texel_points", TexelPoints::LAYOUT)],
     wanted: |facts| match (&facts.output.camera, size(facts)) {
         (None, Some([width, height])) => Ok(format!("a map of {width} × {height} texels")),
-        (None, None) => Err("the map that is asked for has no texels".to_owned()),
-        (Some(_), _) => Err("the output is a view: its points are what the pixels see".to_owned()),
+        (None, None) => Err("the requested map has no texels".to_owned()),
+        (Some(_), _) => Err("the output is a view: its points come from the pixels".to_owned()),
     },
     steps: Steps::Band(|facts, band| {
         let Some([width, _]) = size(facts) else {

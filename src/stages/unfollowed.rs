@@ -1,5 +1,5 @@
-//! Unfollowed — sums the light that takes ways which are not followed: slopes that look away from it, rays that come out of the water
-//! again, troughs below the floor. Only where the waves are steep or deep enough for that.
+//! Unfollowed — sums the light on paths that are not simulated: slopes that face away from the light, rays that leave the water again,
+//! troughs below the floor. Runs only where the waves are steep or deep enough for that.
 
 use super::beams::BEAMS;
 use super::hits::HITS;
@@ -11,9 +11,9 @@ use crate::gpu_struct;
 
 /// Steps along the shortest wave, at least.
 const STEPS_PER_WAVE: f64 = 64.0;
-/// What is still a step on water without waves, m.
+/// Longest step, for water without waves, m.
 const LONGEST_STEP_M: f64 = 1e6;
-/// Where the floor is if there is none, m.
+/// Height of the floor where there is none, m: below everything.
 const NO_FLOOR_M: f64 = -1e30;
 
 gpu_struct! {
@@ -37,25 +37,25 @@ pub static PASS: Pass = Pass {
     uniforms: &[("light", Light::LAYOUT), ("unfollowed", Unfollowed::LAYOUT)],
     wanted: |facts| {
         wanted_for_light(facts)?;
-        let ways = facts.unfollowed_ways().words();
-        if ways.is_empty() {
+        let paths = facts.unfollowed_paths().words();
+        if paths.is_empty() {
             return Err(
-                "no wave is so steep that light comes out of the water again or slopes look away from it, nor so high that it bares the floor"
+                "no wave is steep enough for slopes to face away from a light or for rays to leave the water again, or high enough to bare the floor"
                     .to_owned(),
             );
         }
         Ok(format!(
-            "counts light that is not followed: {}",
-            ways.join(", ")
+            "counts light on paths that are not simulated: {}",
+            paths.join(", ")
         ))
     },
     steps: Steps::FineBeamSet(|facts, set| {
         if facts.lights.beam_sets[set.index].is_submerged() {
             return Vec::new();
         }
-        let ways = facts.unfollowed_ways();
+        let paths = facts.unfollowed_paths();
         let surface = &facts.water.surface;
-        let least_step_m = if ways.again || ways.bared {
+        let least_step_m = if paths.leaves_again || paths.bares_floor {
             (surface.shortest_wave_m() / STEPS_PER_WAVE).min(LONGEST_STEP_M)
         } else {
             0.0
@@ -77,10 +77,14 @@ pub static PASS: Pass = Pass {
             ],
         )]
     }),
-    // Where rays are followed on, each goes through the waves some dozens of times.
+    // Where rays are marched on below the surface, each evaluates the waves some dozens of times.
     work: |facts| {
-        let ways = facts.unfollowed_ways();
-        let steps = if ways.again || ways.bared { 32.0 } else { 0.0 };
+        let paths = facts.unfollowed_paths();
+        let steps = if paths.leaves_again || paths.bares_floor {
+            32.0
+        } else {
+            0.0
+        };
         let waves = facts.water.surface.gpu_element_count() as f64;
         cells(facts) * (2.0 + steps * (1.0 + waves))
     },

@@ -132,12 +132,12 @@ fn what_is_wrong_with_a_method_is_told_at_its_place() {
         (
             json!({ "planes": 3 }),
             "/quality/method/planes",
-            "method level_map has no dial `planes`; `planes` or `volumetric` has",
+            "method level_map has no dial `planes`; it belongs to `planes` or `volumetric`",
         ),
         (
             json!({ "kind": "volumetric", "slicing": "smart" }),
             "/quality/method/slicing",
-            "method volumetric has no dial `slicing`; `planes` has",
+            "method volumetric has no dial `slicing`; it belongs to `planes`",
         ),
         (
             json!({ "kind": "planes", "planes": 1 }),
@@ -220,7 +220,7 @@ fn fields_of_before_say_what_to_write_instead() {
         (
             "placement",
             json!("planes"),
-            "the word of `placement` as `method`",
+            "`method` with the word that `placement` had",
         ),
         (
             "planes",

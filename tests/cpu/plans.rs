@@ -369,7 +369,9 @@ fn layers_multiply_the_maps_of_objects() {
     let more = |name: &str| bytes(&three, name) - bytes(&one, name);
     assert_eq!(more("flux"), 2 * 8 * 3 * map);
     assert_eq!(more("irradiance"), 2 * 12 * map);
-    assert_eq!(more("level_map_targets"), 2 * 8 * map);
+    for target in ["layer_depth", "layer_normal"] {
+        assert_eq!(more(target), 2 * 4 * map, "{target}");
+    }
     let level_map = three.passes.iter().find(|p| p.name == "level_map").unwrap();
     assert!(
         level_map.reason.contains("in 3 layers"),

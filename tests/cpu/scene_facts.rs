@@ -115,7 +115,7 @@ fn waves_that_send_light_out_again_are_known_to() {
                     "output": { "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 16, "height": 16 }
                 }));
                 let facts = caustica::methods::facts(&resolved).unwrap();
-                let (comes_out, known) = (comes_out(&facts), facts.unfollowed_ways().again);
+                let (comes_out, known) = (comes_out(&facts), facts.unfollowed_paths().leaves_again);
                 assert!(known || !comes_out, "{slope}, {elevation_deg}°");
                 seen += u32::from(comes_out);
                 spared += u32::from(!known);

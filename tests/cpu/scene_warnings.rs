@@ -224,7 +224,7 @@ fn what_is_thinner_than_a_texel_is_told() {
     let enters = fresnel_transmittance(1.0, 1.333);
     is_near(unit_flux(&found, thin), enters * 1e-4, 1e-3);
     assert!(
-        found.iter().any(|w| w.message.contains("1.0e-4 m thin")),
+        found.iter().any(|w| w.message.contains("1.0e-4 m wide")),
         "{found:?}"
     );
     for solid in [(PLATE, under.clone()), ("box", under)] {

@@ -64,13 +64,13 @@ fn terms_of_the_energy_account_agree() {
     agrees("TERM_EXTINGUISHED", term::EXTINGUISHED as f64);
     agrees("TERM_LEFT", term::LEFT as f64);
     agrees("TERM_LANDED", term::LANDED as f64);
-    agrees("TERM_TORN", term::TORN as f64);
-    agrees("TERM_TORN_COUNT", term::TORN_COUNT as f64);
+    agrees("TERM_UNRESOLVED", term::UNRESOLVED as f64);
+    agrees("TERM_UNRESOLVED_COUNT", term::UNRESOLVED_COUNT as f64);
     agrees("TERM_CUT", term::CUT as f64);
-    agrees("TERM_TURNED", term::TURNED as f64);
-    agrees("TERM_AGAIN", term::AGAIN as f64);
-    agrees("TERM_BARED", term::BARED as f64);
-    assert!((term::BARED as u64) < sums::ENERGY_TERMS);
+    agrees("TERM_FACING_AWAY", term::FACING_AWAY as f64);
+    agrees("TERM_LEAVING_AGAIN", term::LEAVING_AGAIN as f64);
+    agrees("TERM_BARED_FLOOR", term::BARED_FLOOR as f64);
+    assert!((term::BARED_FLOOR as u64) < sums::ENERGY_TERMS);
 }
 
 #[test]
@@ -82,8 +82,8 @@ fn terms_do_not_overlap() {
         (term::EXTINGUISHED, 3),
         (term::LEFT, 3),
         (term::LANDED, 3),
-        (term::TORN, 1),
-        (term::TORN_COUNT, 1),
+        (term::UNRESOLVED, 1),
+        (term::UNRESOLVED_COUNT, 1),
         (term::CUT, 1),
     ];
     for pair in places.windows(2) {

@@ -338,7 +338,7 @@ fn every_compute_entry_can_be_run_in_pieces() {
             if entry.stage != naga::ShaderStage::Compute || entry.function.arguments.is_empty() {
                 continue;
             }
-            let told = pieces::told_its_piece(&module, path, &entry.name)
+            let told = pieces::with_piece_offset(&module, path, &entry.name)
                 .unwrap_or_else(|error| panic!("{error}"));
             let told = Module::parse(path, told).unwrap_or_else(|error| panic!("{error}"));
             let bound = told.bindings(path, &entry.name).unwrap();
@@ -359,7 +359,7 @@ fn every_compute_entry_can_be_run_in_pieces() {
     }
     assert!(cut >= 15, "{cut}");
     let module = module("stages/hits.wgsl");
-    assert!(pieces::told_its_piece(&module, "stages/hits.wgsl", "misses_main").is_err());
+    assert!(pieces::with_piece_offset(&module, "stages/hits.wgsl", "misses_main").is_err());
 }
 
 /// Pieces of any size tile the dispatch: every workgroup once, in order.

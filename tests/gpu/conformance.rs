@@ -219,10 +219,10 @@ fn the_error_on_the_sine_pool_is_as_expected_and_falls_as_expected() {
 }
 
 /// Every scene of the hard cases renders: finite, with closed accounts where the method conserves energy, the same twice; or it is
-/// refused with an error of the scene or of the budget.
+/// refused with an error of the scene or of the budget. The default method is left out: the hard cases themselves are run with it.
 #[test]
 fn hard_cases_are_finite_and_accounted_for() {
-    for method in methods::ALL {
+    for method in &methods::ALL[1..] {
         let conserves = method.facts_of_default().conserves_energy;
         let (mut rendered, mut refused) = (0, 0);
         for case in hard_scenes() {

@@ -138,7 +138,7 @@ fn the_finest_water_is_as_even_as_any() {
 }
 
 #[test]
-fn a_grid_of_512_cells_runs_in_one_go_and_a_larger_one_in_pieces() {
+fn a_grid_of_512_cells_runs_in_one_dispatch_and_a_larger_one_in_pieces() {
     let mut renderer = harness::new_renderer(&RenderConfig::default());
     for (cells, in_pieces) in [(512, false), (1024, true)] {
         let resolved = scene_files::scene(json!({

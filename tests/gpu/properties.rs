@@ -20,7 +20,7 @@ const CLOSURE: f64 = 1e-5;
 const AGAIN: u64 = 8;
 /// Least share of the scenes that must be rendered, not refused: else the generator asks for nonsense.
 const RENDERED: f64 = 0.8;
-/// Scenes that once failed: torn parts of beams as wide as the floor's map, which one invocation cannot lay alone; beams of a low sun
+/// Scenes that once failed: unresolved parts of beams as wide as the floor's map, which one invocation cannot lay alone; beams of a low sun
 /// too small for the account of their workgroup; and footprints 2000 and 70 times longer than wide, whose texels took more than there was.
 const ONCE_FAILED: [u64; 4] = [219, 422, 600, 760];
 

@@ -34,29 +34,32 @@ fn boxes() -> Value {
     ])
 }
 
-/// Share of the emitted flux that was torn.
-fn torn_share(map: &Map) -> f64 {
+/// Share of the emitted flux in unresolved pieces.
+fn unresolved_share(map: &Map) -> f64 {
     let warnings = map.stats.warnings.iter();
-    let torn = warnings.filter(|w| w.code == "beams_torn");
-    let flux_w: f64 = torn.filter_map(|w| w.flux_w).map(|f| f[0]).sum();
+    let unresolved = warnings.filter(|w| w.code == "beams_unresolved");
+    let flux_w: f64 = unresolved.filter_map(|w| w.flux_w).map(|f| f[0]).sum();
     flux_w / map.stats.energy[0].emitted_w[0]
 }
 
 #[test]
 fn every_number_of_halvings_loses_nothing_and_tears_less() {
-    let mut torn = f64::INFINITY;
+    let mut unresolved = f64::INFINITY;
     for levels in 0..=8 {
         let mut scene = pool(boxes(), 48, levels);
         scene["water"]["absorption_per_m"] = json!([0.3, 0.06, 0.02]);
         let map = Map::of(scene);
-        let share = torn_share(&map);
+        let share = unresolved_share(&map);
         println!(
-            "{levels} halvings: closes to {:.1e}, torn {share:.1e}",
+            "{levels} halvings: closes to {:.1e}, unresolved {share:.1e}",
             map.closure()
         );
         assert!(map.closure() <= 1e-6, "{levels}: {:?}", map.stats.energy);
-        assert!(share > 0.0 && share < 0.8 * torn, "{share} after {torn}");
-        torn = share;
+        assert!(
+            share > 0.0 && share < 0.8 * unresolved,
+            "{share} after {unresolved}"
+        );
+        unresolved = share;
     }
 }
 
@@ -187,7 +190,7 @@ fn chequered() -> Vec<u8> {
 }
 
 #[test]
-fn what_the_queue_cannot_hold_is_torn_and_said() {
+fn what_the_queue_cannot_hold_stays_unresolved_and_is_reported() {
     let mesh = scene_files::mesh_of(&chequered());
     let scene = pool(
         json!([{ "mesh": mesh.id, "translation_m": [0, -1.5, 0], "scale": 2.0 }]),
@@ -200,9 +203,9 @@ fn what_the_queue_cannot_hold_is_torn_and_said() {
     println!("{:?}, {:.1e}", frame.stats.warnings, account.closure);
     assert!(account.closure <= 1e-6, "{account:?}");
     let said = frame.stats.warnings.iter();
-    let said: Vec<_> = said.filter(|w| w.code == "beams_torn").collect();
+    let said: Vec<_> = said.filter(|w| w.code == "beams_unresolved").collect();
     assert!(said[0].message.contains("queue was full"), "{said:?}");
-    // Which are torn does not depend on the queue's order.
+    // Which pieces stay unresolved does not depend on the queue's order.
     let again = harness::render(&resolved);
     assert_eq!(frame.layers, again.layers);
     assert_eq!(frame.stats.energy, again.stats.energy);

@@ -1,6 +1,6 @@
-// Depth profile — which planes of an object have a surface near them (Tipprasert 2006, §4.7.2)? A level is the acceptance interval
-// of a plane; levels without a texel are dropped, valid levels side by side make a piece of the box. A piece of m levels is m
-// distances high, and with ε half a distance eq. 4-22 gives it m planes: those in the middle of its levels.
+// Depth profile — the planes of an object that have a surface near them (Tipprasert 2006, §4.7.2). A level is the acceptance interval of a
+// plane. Levels without a texel are dropped; adjacent valid levels form a piece of the box. A piece of m levels is m plane distances high,
+// and with ε half a plane distance eq. 4-22 gives it m planes: those in the middle of its levels.
 #import "lib/slicing.wgsl"
 #import "shared/planes_uniform.wgsl"
 #import "shared/receivers.wgsl"
@@ -8,8 +8,8 @@
 #import "shared/level_maps.wgsl"
 #import "shared/reference_planes.wgsl"
 
-// Per object: planes that are used, pieces of the box they make, two words unused, then the planes in order, then texels per level,
-// then per tile of TILE² texels the first and the last plane that accept one of its texels, in 16 bits each.
+// Per object: number of used planes, number of pieces of the box, two unused words, then the planes in order, then texels per level, then
+// per tile of TILE² texels the first and the last plane that accept one of its texels, in 16 bits each.
 @group(0) @binding(18) var<storage, read_write> plane_lists: array<atomic<u32>>;
 
 const LIST_HEAD: u32 = 4u;
@@ -19,7 +19,7 @@ const TILE: u32 = 4u;
 
 var<workgroup> counts: array<atomic<u32>, MOST_PLANES>;
 
-// The histogram: one invocation counts a few texels.
+// The histogram: one invocation counts TEXELS_EACH texels.
 @compute @workgroup_size(64)
 fn profile_count(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let r = receivers[planes.receiver];
@@ -38,7 +38,7 @@ fn profile_count(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
     }
 }
 
-// The list, in order: one invocation, so that it is the same every time.
+// The list, in order: a single invocation, so that the order is always the same.
 @compute @workgroup_size(1)
 fn profile_compact() {
     var used = 0u;
@@ -57,7 +57,7 @@ fn profile_compact() {
     atomicStore(&plane_lists[planes.list + 1u], pieces);
 }
 
-// The planes near each tile, one invocation per tile: beams are tried with no others.
+// The planes near each tile, one invocation per tile: beams are tested only against these.
 @compute @workgroup_size(8, 8)
 fn profile_tiles(@builtin(global_invocation_id) id: vec3u) {
     let r = receivers[planes.receiver];

@@ -1,6 +1,6 @@
-// Planes — light on meshes by reference planes (Tipprasert 2006, §4.4, §4.5): each beam's triangle on each plane lights the texels
-// whose depth is within half a distance of the plane. One invocation per beam and a few planes in a row, which are tried only where
-// what the level map holds under the beam comes near them.
+// Planes — light on meshes by reference planes (Tipprasert 2006, §4.4, §4.5). Each beam's triangle on each plane lights the texels whose
+// depth is within half a plane distance. One invocation per beam and PLANES_EACH consecutive planes; a plane is tested only if the level map
+// has a surface near it under the beam.
 #import "lib/attenuation.wgsl"
 #import "lib/coverage.wgsl"
 #import "lib/slicing.wgsl"
@@ -22,8 +22,8 @@
 #import "shared/cull.wgsl"
 #import "shared/account.wgsl"
 
-// Per object: planes that are used, pieces of the box they make, two words unused, then the planes in order, then texels per level,
-// then the planes near each tile; see depth_profile.wgsl.
+// Per object: number of used planes, number of pieces of the box, two unused words, then the planes in order, then texels per level, then
+// the planes near each tile; see depth_profile.wgsl.
 @group(0) @binding(18) var<storage, read> plane_lists: array<u32>;
 // Per object: beams kept, planes used, pieces of the box, beams with wide footprints.
 @group(0) @binding(19) var<storage, read_write> plane_counts: array<vec4u>;
@@ -31,16 +31,17 @@
 const LIST_HEAD: u32 = 4u;
 const MOST_PLANES: u32 = 1024u;
 const TILE: i32 = 4;
-// Planes in a row that an invocation tries: its beam is read once for all of them. 64 invocations × 4 planes × 2²³ counts fit the
-// workgroup's account.
+// Consecutive planes per invocation, which reads its beam once for all of them. 64 invocations × 4 planes × 2²³ counts fit the workgroup's
+// account.
 const PLANES_EACH: u32 = 4u;
 
-// What takes light now: texels of `accepting`'s level map that belong to plane `accepted`; and which share of the triangle they took.
+// The texels that currently accept light: those of `accepting`'s level map that belong to plane `accepted`. `taken` is the share of the
+// triangle that they took.
 var<private> accepting: Receiver;
 var<private> accepted: i32;
 var<private> taken: f32;
 
-// Adds `share` of the flux at texel (x, y) where the plane accepts it; what lies beside the map is returned.
+// Adds `share` of the flux at texel (x, y) if the plane accepts it; returns the share that lies outside the map.
 fn deposit_share(target_map: Target, x: i32, y: i32, share: f32, triangle_flux: vec3f) -> f32 {
     if x < 0 || y < 0 || x >= target_map.width || y >= target_map.height { return share; }
     if share <= 0.0 || plane_of_texel(accepting, vec2i(x, y)) != accepted { return 0.0; }
@@ -62,11 +63,11 @@ fn planes_share_out() {
     plane_counts[planes.object] = vec4u(kept_beams(), used, plane_lists[planes.list + 1u], atomicLoad(&beam_queue[WIDE_COUNT]));
 }
 
-// The first and the last plane that accept a texel somewhere between two crossings of a beam; first > last where there is none.
+// The first and the last plane that accept a texel between two crossings of a beam; first > last if there is none.
 fn planes_between(r: Receiver, from_uv: mat3x2f, to_uv: mat3x2f) -> vec2u {
     var low = min(min(from_uv[0], min(from_uv[1], from_uv[2])), min(to_uv[0], min(to_uv[1], to_uv[2])));
     var high = max(max(from_uv[0], max(from_uv[1], from_uv[2])), max(to_uv[0], max(to_uv[1], to_uv[2])));
-    // Crossings in between are on straight ways up to rounding.
+    // Crossings in between lie on straight lines, apart from rounding.
     let margin = 0.01 + 1e-5 * max(abs(low), abs(high));
     low -= margin;
     high += margin;
@@ -117,8 +118,8 @@ fn planes_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
     flush_account(invocation);
 }
 
-// Some workgroups (along z) per wide footprint (along x) and plane (along y); what is lost on the way goes straight to the global
-// sums, as in deposit.wgsl.
+// Several workgroups (along z) per wide footprint (along x) and plane (along y). Extinguished flux is added directly to the global sums, as
+// in deposit.wgsl.
 @compute @workgroup_size(64)
 fn planes_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
     accepting = receivers[planes.receiver];

@@ -1,5 +1,5 @@
-// Volumetric — light on meshes by an image of every slice (Tipprasert 2006, §5.2.1): per plane the piece of the mesh nearest to it
-// is drawn, a caustics map is made from all beams without any test, the slice masks it, and the first slice that holds a texel wins.
+// Volumetric — light on meshes by an image of every slice (Tipprasert 2006, §5.2.1). For each plane, the part of the mesh nearest to it is
+// drawn, a caustics map is made from all beams without any test, and the slice masks it. The first slice that holds a texel wins.
 #import "lib/attenuation.wgsl"
 #import "lib/coverage.wgsl"
 #import "lib/slicing.wgsl"
@@ -25,7 +25,7 @@
 #import "shared/cull.wgsl"
 
 @group(0) @binding(19) var<storage, read_write> plane_counts: array<vec4u>;
-// Per texel of the object at work: the colour of the first slice that holds it, RGBA8; 0: none yet.
+// Per texel of the current object: the colour of the first slice that holds it, RGBA8; 0: none yet.
 @group(0) @binding(20) var<storage, read_write> combined: array<u32>;
 @group(0) @binding(26) var slice: texture_2d<f32>;
 
@@ -34,7 +34,7 @@ struct SliceVertex {
     @location(0) @interpolate(flat) albedo: vec3f,
 }
 
-// The view's s_min and s_max are half way to the neighbouring planes: what lies beyond is clipped.
+// The view's s_min and s_max are half way to the neighbouring planes; everything beyond is clipped.
 @vertex
 fn slice_vertex(@builtin(vertex_index) index: u32) -> SliceVertex {
     let triangle = instances[planes.object].first_triangle + 4u * (index / 3u);
@@ -98,7 +98,7 @@ fn volumetric_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups)
     }
 }
 
-// Masks the caustics map with its slice, front to back, and leaves it empty for the next plane. One invocation per texel.
+// Masks the caustics map with its slice, front to back, and clears it for the next plane. One invocation per texel.
 @compute @workgroup_size(8, 8)
 fn volumetric_combine(@builtin(global_invocation_id) id: vec3u) {
     let r = receivers[planes.receiver];

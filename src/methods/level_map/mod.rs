@@ -1,5 +1,5 @@
-//! Level maps (Tipprasert 2006), with light placed where rays hit: each ray is marched into the position map of a mesh until it crosses
-//! the surface, the thesis's stated next step; between the hits go beams with exact texel coverage. The default.
+//! Level maps (Tipprasert 2006), with light placed where rays hit. Each ray is marched into the position map of a mesh until it crosses
+//! the surface (the thesis's stated next step); beams span the hits and are deposited with exact texel coverage. The default method.
 
 use super::{Conformance, Method};
 use crate::facts::{MethodFacts, Product};

@@ -1,5 +1,5 @@
-//! Depth profile — which planes of an object are used: with smart slicing (Tipprasert 2006, §4.7.2) those whose acceptance interval
-//! holds a texel of the level map, otherwise all; and which of them come near the surface in each tile of the map.
+//! Depth profile — selects the planes of an object. With smart slicing (Tipprasert 2006, §4.7.2) these are the planes whose acceptance
+//! interval holds a texel of the level map, otherwise all planes. Also lists, per tile of the map, the planes near the surface.
 
 use crate::stages::level_map::LEVEL_MAPS;
 use crate::stages::light::Light;
@@ -25,7 +25,7 @@ pub static PASS: Pass = Pass {
         wanted_for_planes(facts)?;
         let planes = facts.method.reference_planes;
         Ok(if facts.method.skips_empty_planes {
-            format!("of {planes} planes those without a surface near them are left out")
+            format!("of {planes} planes, those without a surface near them are skipped")
         } else {
             format!("all {planes} planes are used")
         })

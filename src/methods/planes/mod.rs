@@ -1,5 +1,5 @@
-//! Reference planes (Tipprasert 2006, ch. 4): the thesis's own way to place light on meshes. Rays are cut with planes through the
-//! object's box, and their light is accepted where the level map is within half a distance of planes. To compare with.
+//! Reference planes (Tipprasert 2006, ch. 4): the thesis's own method to place light on meshes. Rays are intersected with planes through
+//! the object's box; their light is accepted where the level map is within half a plane distance. For comparison.
 
 pub mod depth_profile;
 pub mod plane_deposit;

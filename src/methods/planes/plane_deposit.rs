@@ -1,5 +1,5 @@
-//! Plane deposit — light on meshes by reference planes (Tipprasert 2006, ch. 4): each beam's triangle on each plane lights the texels
-//! whose depth is within half a distance of the plane. Only beams that may reach the object are tried.
+//! Plane deposit — light on meshes by reference planes (Tipprasert 2006, ch. 4). Each beam's triangle on each plane lights the texels
+//! whose depth is within half a plane distance. Only beams that may reach the object are processed.
 
 use crate::stages::beams::BEAMS;
 use crate::stages::level_map::LEVEL_MAPS;

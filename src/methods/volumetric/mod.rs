@@ -1,5 +1,5 @@
-//! The volumetric baseline (Tipprasert 2006, §5.2.1), what level maps are measured against: every plane of a mesh has an image of its
-//! slice, drawn anew for each frame, which masks a caustics map of all beams. To compare with.
+//! The volumetric method (Tipprasert 2006, §5.2.1), the thesis's baseline for level maps: every plane of a mesh has an image of its slice,
+//! drawn again for each frame, which masks a caustics map of all beams. For comparison.
 
 pub mod slice_deposit;
 

@@ -1,5 +1,5 @@
-//! Slice deposit — light on meshes by an image of every slice (Tipprasert 2006, §5.2.1), what level maps are measured against. All of
-//! it is done anew for every frame, slices too.
+//! Slice deposit — light on meshes by an image of every slice (Tipprasert 2006, §5.2.1), the baseline for level maps. Everything,
+//! including the slices, is computed again for every frame.
 
 use wgpu::{
     CompareFunction, PrimitiveTopology, TextureFormat, TextureUsages, TextureViewDimension,
@@ -23,10 +23,10 @@ use crate::stages::sums::FLUX;
 use crate::stages::surface::SURFACE;
 use crate::stages::{Groups, Pass, Slot, Step, Steps, Work};
 
-/// An image of each slice of the object at work.
+/// An image of each slice of the current object.
 pub static SLICES: Slot = Slot::texture(
     "slices",
-    "a colour image per plane of the object at work",
+    "a colour image per plane of the current object",
     Texture {
         format: TextureFormat::Rgba8Unorm,
         dimension: TextureViewDimension::D2,
@@ -50,10 +50,10 @@ pub static SLICE_DEPTH: Slot = Slot::texture(
     },
 );
 
-/// The slices seen so far, front to back.
+/// The slices processed so far, front to back.
 pub static COMBINED: Slot = Slot::buffer(
     "combined",
-    "colour of the first slice per texel of the object at work",
+    "colour of the first slice per texel of the current object",
     |facts| 4 * MapLayout::of(facts).scratch_texels(),
 );
 
@@ -127,7 +127,7 @@ pub static PASS: Pass = Pass {
     work: |_| 0.0,
 };
 
-/// Draws what lies between the middles of a plane and its neighbours.
+/// Draws the part of the mesh between the midpoints from a plane to its neighbours.
 fn slice_step(
     facts: &SceneFacts,
     set: BeamSetRun,
@@ -164,7 +164,7 @@ fn slice_step(
                 stencil: wgpu::StencilState::default(),
                 stencil_clear: None,
             }),
-            // The images are as large as the largest object's.
+            // The images are sized for the largest object.
             viewport: Some([level_box.key.texels; 2]),
         }),
         uniforms,

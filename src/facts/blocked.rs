@@ -1,5 +1,5 @@
-//! How much light objects stop in truth that they are not simulated to stop: rays through the meshes' hierarchies from a grid of
-//! places on the water at rest. A sample of a thousand places or so, for warnings; no picture depends on it.
+//! Light that objects would block in reality, although the simulation does not block it. Estimated with rays through the meshes'
+//! hierarchies from a grid of about a thousand places on the water at rest. Only warnings use it; no picture depends on it.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -16,20 +16,20 @@ use crate::physics::octahedral::octahedral_place;
 use crate::physics::refraction::refract_direction;
 use crate::physics::solid_angle::solid_angle;
 
-/// Places along each side of what is looked at, at most.
+/// Most places along each side of a sampled rectangle.
 const MOST_SIDE: u32 = 32;
-/// Fewest of them, where many objects share the rays.
+/// Fewest places along each side, where many objects share the rays.
 const LEAST_SIDE: u32 = 4;
-/// Rays of a scene for each thing that is looked for, as long as each object and light gets a few.
+/// Number of rays per scene for each quantity, shared by its objects and lights; each pair gets a few in any case.
 const RAYS: f64 = 32_768.0;
-/// Directions around a light within an object, at most and at least.
+/// Fewest and most directions around a light within an object.
 const DIRECTIONS: [f64; 2] = [64.0, 1024.0];
-/// How far behind its origin a ray still meets something, as a share of the object's size: what lies in the plane that rays start from
-/// counts.
+/// Distance behind a ray's origin at which a hit still counts, as a share of the object's size, so that surfaces in the plane where rays
+/// start are hit.
 const BEHIND: f64 = 1e-6;
 
-/// Light that objects stop, of the lights of a scene whose windows are known.
-pub(super) struct Stopped<'a> {
+/// Light of a scene that its objects block.
+pub(super) struct Blocked<'a> {
     facts: &'a SceneFacts,
     meshes: &'a [Arc<Mesh>],
     mesh_from_local: Vec<DAffine3>,
@@ -37,7 +37,7 @@ pub(super) struct Stopped<'a> {
     directions: u32,
 }
 
-impl<'a> Stopped<'a> {
+impl<'a> Blocked<'a> {
     /// `meshes` are those of the scene's objects, one each.
     pub(super) fn new(facts: &'a SceneFacts, meshes: &'a [Arc<Mesh>]) -> Self {
         let pairs = facts.receivers.objects.len() * facts.lights.beam_sets.len();
@@ -72,15 +72,15 @@ impl<'a> Stopped<'a> {
         }
     }
 
-    /// Flux onto the water, before its reflection, that the part of an object above the water at rest stops, all lights together, W; each
-    /// object for itself, as if the others were not there.
+    /// Flux towards the water, before its reflection, that the part of an object above the water at rest blocks, W; sum over all lights.
+    /// Each object is counted as if it were alone.
     pub(super) fn above_water_w(&self, object: usize) -> [f64; 3] {
         self.of_all_lights(|light| self.unit_flux_above(object, light))
     }
 
-    /// Flux that one object after another stops although an object before it has stopped it already, all lights together, W; as it
-    /// goes under the water at rest, without what is absorbed.
-    pub(super) fn stopped_again_w(&self) -> [f64; 3] {
+    /// Flux that arrives at further objects although an object nearer to the light has blocked it already, W; sum over all lights and over
+    /// the further objects. Taken just under the water at rest, without absorption.
+    pub(super) fn blocked_again_w(&self) -> [f64; 3] {
         self.of_all_lights(|light| self.unit_flux_again(light))
     }
 
@@ -104,7 +104,7 @@ impl<'a> Stopped<'a> {
         sum_w
     }
 
-    /// Flux of a light of unit power that the dry part of an object keeps from the water, m² or sr.
+    /// Flux of a light of unit power that the dry part of an object blocks, m² or sr.
     fn unit_flux_above(&self, object: usize, light: &BeamSet) -> f64 {
         let bounds = &self.facts.receivers.objects[object];
         if let Source::Sun { to_light } = light.source {
@@ -121,7 +121,7 @@ impl<'a> Stopped<'a> {
         places(rect, self.side).filter_map(falls).sum()
     }
 
-    /// Area that the dry part of an object shows a sun, as far as its shadow falls on a piece of the water at rest, m².
+    /// Area of the silhouette of an object's dry part seen from a sun, as far as its shadow falls into `window`, m².
     fn silhouette_m2(&self, object: usize, to_light: DVec3, window: Rect) -> f64 {
         let bounds = &self.facts.receivers.objects[object];
         if bounds.max.y < 0.0 {
@@ -151,10 +151,10 @@ impl<'a> Stopped<'a> {
         shadowed.count() as f64 * step_m.element_product()
     }
 
-    /// Flux of a light of unit power that is stopped a second and further times, m² or sr.
+    /// Flux of a light of unit power that hits a second and further objects, once for each of them, m² or sr.
     fn unit_flux_again(&self, light: &BeamSet) -> f64 {
         let again = |from_m: DVec3, direction: DVec3| {
-            // What goes up ends at the water.
+            // Rays that go up end at the water.
             let reach_m = if direction.y > 0.0 {
                 -from_m.y.min(0.0) / direction.y
             } else {
@@ -192,7 +192,7 @@ impl<'a> Stopped<'a> {
         places(window, side).filter_map(falls).sum()
     }
 
-    /// Whether a ray meets an object before `reach_m`; `direction` has unit length.
+    /// Whether a ray hits an object before `reach_m`; `direction` has unit length.
     fn meets(&self, object: usize, from_m: DVec3, direction: DVec3, reach_m: f64) -> bool {
         let mesh = &self.meshes[object];
         let mesh_from_local = &self.mesh_from_local[object];
@@ -224,19 +224,19 @@ struct Place {
 }
 
 impl Place {
-    /// Unit direction to a light above the water, and how far it is, m.
+    /// Unit direction to a light above the water, and its distance, m.
     fn to(&self, source: &Source) -> Option<(DVec3, f64)> {
         match *source {
             Source::Sun { to_light } => Some((to_light, EVERYWHERE_M)),
             Source::Point { position_m } => {
-                let way = position_m - self.at_m;
-                (way.y > 0.0).then(|| (way.normalize(), way.length()))
+                let to_light = position_m - self.at_m;
+                (to_light.y > 0.0).then(|| (to_light.normalize(), to_light.length()))
             }
             Source::Submerged { .. } => None,
         }
     }
 
-    /// Flux of a light of unit power onto it, m² of a sun, sr of a point light.
+    /// Flux of a light of unit power onto it: m² for a sun, sr for a point light.
     fn unit_flux(&self, source: &Source) -> f64 {
         match *source {
             Source::Sun { to_light } => self.rect.size().element_product() * to_light.y,
@@ -255,7 +255,7 @@ pub(super) fn rect_sr(rect: Rect, position_m: DVec3) -> f64 {
     solid_angle(low, z, x).abs() + solid_angle(high, -z, -x).abs()
 }
 
-/// The even grid of places that make up a rectangle of the water at rest.
+/// A rectangle of the water at rest, divided evenly into `side` × `side` places.
 fn places(rect: Rect, side: u32) -> impl Iterator<Item = Place> {
     let step_m = rect.size() / f64::from(side);
     (0..side * side).map(move |k| {
@@ -283,7 +283,7 @@ fn sphere(count: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// The piece of a point light's window in which the shadow of an object's dry part lies; `None` where there is none.
+/// The part of a point light's window that the shadow of an object's dry part falls on; `None` where there is none.
 fn shadow_on_water(object: &ObjectFacts, light: &BeamSet) -> Option<Rect> {
     let Source::Point { position_m } = light.source else {
         return None;
@@ -293,7 +293,7 @@ fn shadow_on_water(object: &ObjectFacts, light: &BeamSet) -> Option<Rect> {
         return None;
     }
     if object.max.y >= position_m.y {
-        // What reaches up beside the light may hide it from anywhere.
+        // An object that reaches above the light may shadow any part of the window.
         return Some(light.window);
     }
     let shadow = corners(object.min.with_y(low_m), object.max)
