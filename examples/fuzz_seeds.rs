@@ -1,4 +1,4 @@
-//! Writes what fuzzing begins with: the project's scenes, the scenes of the hard cases, one for each method, and meshes; `make fuzz` runs it.
+//! Writes the seeds of fuzzing: the project's scenes, the scenes of the hard cases, one scene per method, and meshes. `make fuzz` runs it.
 //!
 //! Usage: `fuzz_seeds FOLDER`; files go to `FOLDER/scene` and `FOLDER/obj`.
 
@@ -10,10 +10,10 @@ use caustica::methods;
 use caustica::scene::MethodChoice;
 use serde_json::{Value, json};
 
-/// Larger seeds make every try slow.
+/// Largest seed; larger ones make every run slow.
 const MOST_BYTES: usize = 16 << 10;
 
-/// What OBJ files have besides plain triangles.
+/// OBJ files with more than plain triangles.
 const OBJS: [(&str, &str); 6] = [
     ("relative", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n"),
     (
@@ -74,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::write(scenes.join(case.name), serde_json::to_vec(&scene)?)?;
     }
     for method in methods::ALL {
-        // With every dial, so that there is something to change.
+        // With every dial, so that fuzzing can change each.
         let mut choice = MethodChoice::named(method.name);
         for dial in method.dials {
             choice = choice.with(dial, dial.default_value());

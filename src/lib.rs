@@ -1,5 +1,7 @@
-//! Caustica renders water caustics: a scene (waves, lights, meshes, a camera) becomes a picture or an irradiance map, with
-//! what it cost in time and memory and an account of every watt.
+//! Caustica renders water caustics. It turns a scene (waves, lights, meshes, a camera) into a picture or an irradiance map. With it
+//! come the time and memory of every pass, and an energy account that says where the light went.
+//!
+//! `docs/glossary.md` explains the terms, `docs/adding-a-method.md` how to add a method.
 //!
 //! # The life of a request
 //!
@@ -9,58 +11,62 @@
 //! Frame ─ encode (CPU) ─> PNG | EXR, and Stats
 //! ```
 //!
-//! 1. [`scene::Scene::from_json`] reads JSON strictly; every complaint has a JSON pointer. [`methods::resolve()`] checks ranges and
-//!    turns mesh ids into [`mesh::Mesh`]es.
-//! 2. [`facts::SceneFacts`] holds the figures that decide what has to be done: the water's surface, which beam sets carry light to
-//!    the receivers and through which rectangle of water, what the camera sees of the floor. All are in coordinates around what is
-//!    looked at, so that f32 is as good far from the origin as near it.
+//! 1. [`scene::Scene::from_json`] reads JSON strictly: unknown fields are errors, and every error has a JSON pointer.
+//!    [`methods::resolve()`] checks ranges and turns mesh ids into [`mesh::Mesh`]es.
+//! 2. [`facts::SceneFacts`] holds what decides which work is needed: the water's surface, the beam sets that light the receivers, the
+//!    rectangle of water that each beam set passes through (its window), and what the camera sees of the floor. Its coordinates are
+//!    relative to the visible region, so that f32 is as accurate far from the origin as near it.
 //! 3. [`methods::of`] finds the method that the scene names, with its passes. [`plan::plan_scene`] walks the list of passes backwards
-//!    from what is asked for and keeps what is needed, with a sentence for each pass that is in or out. No GPU is involved; the peak
-//!    of the memory is known before anything is allocated.
-//! 4. [`render::Renderer`] owns the device and the caches and runs the plan. It knows no method by name: what a pass does is in its
+//!    from the requested output and keeps the passes that are needed. Each pass gets a sentence that says why it is present or absent.
+//!    No GPU is involved, and the peak memory is known before anything is allocated.
+//! 4. [`render::Renderer`] owns the device and the caches and runs the plan. It knows no method by name. What a pass does is in its
 //!    description ([`stages::Pass`]), and bindings are matched by name from the WGSL. Level maps live in [`cache::LevelMapCache`]: one
 //!    map serves every frame of an animation.
-//! 5. [`frame::Frame`] holds linear f32 layers and [`stats::Stats`]; [`image::encode`] makes the file, on the CPU, so that the
+//! 5. [`frame::Frame`] holds linear f32 layers and [`stats::Stats`]. [`image::encode`] makes the file on the CPU, so that the
 //!    same request gives the same bytes.
 //!
 //! # How the default method carries light
 //!
-//! A grid of water vertices over just the rectangle that can light the receivers sends refracted rays; each ends on the floor
-//! (exactly) or on a mesh (marched into its level map; at the map's edges tested against the mesh itself). A hierarchy over the objects
-//! says which of them a ray may meet, and each object's surfaces along the light (`quality.layers`) are receivers of their own. Three
-//! neighbouring rays bound a beam. Its flux is laid on the receiver's map in proportion to the exactly covered share of each texel,
-//! never divided by a footprint that can vanish, as integer sums. Beams that straddle receivers are halved with rays of their own, and
-//! their parts again while they straddle. The energy account closes: emitted = landed + absorbed + scattered + reflected + left the
-//! region + missed, each summed where it happens.
+//! A grid of water vertices covers the window: the rectangle of water that can light the receivers. Each vertex sends one refracted ray.
+//! A ray ends on the floor (computed exactly) or on a mesh (found by marching through its level map, and at the map's edges by testing
+//! the mesh itself). A hierarchy over the objects selects those that a ray may meet. Each layer of an object (`quality.layers`) is a
+//! receiver of its own.
+//!
+//! Three neighbouring rays bound a beam. Its flux is deposited on the receiver's map as integer sums, in proportion to the exactly covered
+//! share of each texel. It is never divided by the area of the footprint, which can vanish. A beam whose corners end on different
+//! receivers is split with additional exact rays, and so are its pieces that still straddle receivers.
+//!
+//! The energy account closes: emitted = landed + absorbed + scattered + reflected + left the region + missed. Each term is summed where it
+//! happens.
 //!
 //! # Rooms
 //!
-//! A room knows the rooms below it and nothing else; `tests/cpu/rooms.rs` holds that.
+//! A *room* is a module of this crate. It uses only rooms below it in this table; `tests/cpu/rooms.rs` checks that.
 //!
 //! | room | holds |
 //! |---|---|
-//! | [`cli`], [`http`] | faces: words and status codes; each command or resource is one file |
+//! | [`cli`], [`http`] | command line and HTTP service: texts and status codes; each command or resource is one file |
 //! | [`lab`] | studies, plots, reports, published experiments, hard cases, generated shapes; the engine never imports it |
 //! | [`gpu_queue`] | the bounded queue and the one GPU thread; loss of the device and recovery |
 //! | [`render`] | facts + plan → frame; the self-check |
-//! | [`plan`] | what a frame awaits, and what its plan reads like |
-//! | [`tuning`] | from a wanted error or time to dials |
-//! | [`methods`] | one folder per published method and ours; [`methods::ALL`] is the list |
+//! | [`plan`] | which results a frame needs, and the plan as text and JSON |
+//! | [`tuning`] | chooses dials for a target error or time |
+//! | [`methods`] | one folder per method, published or our own; [`methods::ALL`] is the list |
 //! | [`stages`] | passes that several methods share, each with its slots |
-//! | [`facts`] | what a scene boils down to: water, lights with their beam sets, receivers, output; warnings |
-//! | [`cache`] | what stays on the GPU between frames |
-//! | [`reference`] | float64 truth by plain rays: another algorithm, not a port; it places the scene by itself |
-//! | [`accuracy`] | error of images, and a frame's estimate of its own error |
+//! | [`facts`] | what is derived from a scene: water, lights with their beam sets, receivers, output, warnings |
+//! | [`cache`] | what is kept on the GPU between frames |
+//! | [`reference`] | float64 truth by plain rays: an independent algorithm, not a port; it also derives the scene's geometry independently |
+//! | [`accuracy`] | error metrics of images, and a frame's estimate of its own error |
 //! | [`graph`] | passes, slots, scopes and the planner's walk: generic, without water or wgpu calls |
 //! | [`gpu`] | device, kernels, buffers, timing; knows nothing of water |
 //! | [`image`] | PNG, EXR, tone curve |
-//! | [`assets`] | what scenes refer to by content id |
-//! | [`scene`] | what a request may say: types, ranges, parsing, validation |
+//! | [`assets`] | files that scenes refer to by content id |
+//! | [`scene`] | what a request may contain: types, ranges, parsing, validation |
 //! | [`waves`] | the water's surface |
-//! | [`mesh`] | OBJ in, repair report, ray hierarchy |
-//! | [`physics`] | formulas in f64, each with its source; twins in `shaders/lib`, tied by [`physics::registry`] |
+//! | [`mesh`] | reading OBJ, repairs with a report, ray hierarchy |
+//! | [`physics`] | formulas in f64, each with its source; [`physics::registry`] pairs them with their twins in `shaders/lib` |
 //! | [`config`] | every setting |
-//! | [`calibration`] | what passes cost on one machine, and how far estimates of errors are off |
+//! | [`calibration`] | what passes cost on one machine, and how far error estimates may be off |
 
 pub mod accuracy;
 pub mod assets;

@@ -1,4 +1,4 @@
-//! What a frame's estimate of its own error costs: each frame plain and estimating in turn.
+//! The cost of a frame's estimate of its own error: each frame without and with it, interleaved.
 
 use std::error::Error;
 use std::time::Instant;
@@ -12,12 +12,12 @@ use crate::frames::scene;
 use crate::report::{Cell, Table};
 use crate::spread::{Spread, ms};
 
-/// Frames with and without the estimate, taken in turn, so that a busy machine slows both.
+/// Frames with and without the estimate, interleaved, so that a busy machine slows both.
 pub(crate) fn estimates(renderer: &mut Renderer, effort: Effort) -> Result<Table, Box<dyn Error>> {
     let mut table = Table::new(
         "A frame's own estimate: time",
-        "Frames without and with `quality.estimate_error`, in turn; ms, median (smallest..largest), and the median of the pairs' ratios: \
-         the two of a pair are seconds apart at most, however a busy machine's speed changes.",
+        "Frames without and with `quality.estimate_error`, interleaved; ms, median (smallest..largest), and the median of the \
+        pairs' ratios. The two frames of a pair are at most seconds apart, so changes of a busy machine's speed affect both.",
         &["scene", "cells", "plain", "estimating", "ratio"],
     );
     let cases = [

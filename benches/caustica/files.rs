@@ -1,4 +1,4 @@
-//! What files cost: the same frame in every format.
+//! The cost of files: the same frame in every format.
 
 use caustica::frame::Frame;
 use caustica::image::{EncodeError, Metadata, encode};

@@ -1,4 +1,4 @@
-//! What frames cost: time per pass, and error against the float64 truth.
+//! The cost of frames: time per pass, and error against the float64 truth.
 
 use std::error::Error;
 use std::time::Instant;
@@ -22,14 +22,14 @@ use crate::spread::{Spread, ms, repeat};
 const SINE_POOL: &str = "scenes/sine_pool.json";
 const TEAPOT_POOL: &str = "scenes/teapot_pool.json";
 
-/// What the sine pool gave.
+/// Results of the sine pool.
 #[derive(Debug)]
 pub(crate) struct SinePool {
     pub table: Table,
     pub memory: Vec<Stage>,
 }
 
-/// What the teapot pool gave.
+/// Results of the teapot pool.
 #[derive(Debug)]
 pub(crate) struct TeapotPool {
     pub table: Table,
@@ -38,7 +38,7 @@ pub(crate) struct TeapotPool {
     pub frame: Frame,
 }
 
-/// The sine pool with ever finer water, and how far each is from the truth.
+/// The sine pool with finer and finer water, and the error of each.
 pub(crate) fn sine_pool(
     renderer: &mut Renderer,
     effort: Effort,
@@ -141,8 +141,9 @@ pub(crate) fn teapot_pool(
     let mut table = pass_table(
         "Teapot pool: time",
         &format!(
-            "`{TEAPOT_POOL}` with one ray per pixel; ms, median (smallest..largest). The first frame after the start pays for the \
-             pipelines; a new mesh for its upload and its level map; a warm frame finds them."
+            "`{TEAPOT_POOL}` with one ray per pixel; ms, median (smallest..largest). `first`: the first frame after the start, \
+            which compiles the pipelines. `new mesh`: includes the upload of the mesh and its level map. `warm`: all of these \
+            exist."
         ),
         &["pixels", "state"],
         rows.iter().map(|(_, (stats, _))| stats),

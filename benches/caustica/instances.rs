@@ -1,4 +1,4 @@
-//! What many objects cost: few, some and hundreds of instances over the same water, with the hierarchy over them and without it.
+//! The cost of many objects: 5, 50 and 200 instances under the same water, with and without the hierarchy over them.
 
 use std::error::Error;
 
@@ -18,7 +18,7 @@ use crate::spread::{Spread, repeat};
 #[path = "../../tests/support/instances.rs"]
 mod instances_scene;
 
-/// Passes whose rays look for objects.
+/// Passes whose rays search for objects.
 const SEEKING: [&str; 3] = ["hits", "split", "camera_hits"];
 
 /// The table of instances.
@@ -31,14 +31,14 @@ pub(crate) fn instances(effort: Effort) -> Result<Table, Box<dyn Error>> {
     let mut table = Table::new(
         "Instances: time",
         "Instances of five meshes scattered over the same 6 m by 6 m of water, 384 water cells, 320 × 240 pixels; ms, median \
-         (smallest..largest). With the hierarchy over the instances rays look at those they may meet; each: at the bounds of every \
-         one, as there is no hierarchy.",
+         (smallest..largest). `hierarchy`: rays test only the instances that the hierarchy selects. `each`: rays test the \
+         bounds of every instance, without a hierarchy.",
         &columns,
     );
     let [from, to] = instances_scene::WITHOUT_HIERARCHY;
     let each = methods::embedded()
         .with_replacement("shared/geometry.wgsl", from, to)
-        .ok_or("the walk over the instances is not where it was")?;
+        .ok_or("the loop over the instances is not found")?;
     for (walk, sources) in [("hierarchy", methods::embedded()), ("each", each)] {
         let mut renderer = Renderer::with_shaders(&RenderConfig::default(), sources)?;
         for count in [5, 50, 200] {

@@ -1,10 +1,11 @@
-//! `make bench`: one run, one table of what Caustica costs here, also as `out/bench.md` and `out/bench.json`.
+//! `make bench`: measures the cost of Caustica on this machine and writes tables, also as `out/bench.md` and `out/bench.json`.
 //!
 //! `cargo bench --bench caustica -- --quick` is the short form. Every figure is the median of several warm runs with the
 //! smallest and the largest beside it, since other work on the machine shows first in the largest.
 //!
-//! `frames` measures rendering, `instances` many objects, `savings` what is left out or kept, `accuracy` what a frame's estimate of its error costs, `pieces`
-//! how long dispatches are cut, `files` encoding, `service` HTTP; `spread` sums up runs, `memory` asks the system, `report` writes the table.
+//! `frames` measures rendering, `instances` many objects, `savings` skipped or kept work, `accuracy` the estimate of a frame's error,
+//! `pieces` long dispatches, `files` encoding, `service` HTTP. `spread` summarises runs, `memory` reads the system's figures, `report`
+//! writes the tables.
 
 mod accuracy;
 mod files;
@@ -27,7 +28,7 @@ use caustica::render::Renderer;
 
 use report::Report;
 
-/// How long to measure.
+/// The duration of measurements.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
     /// Time for one row of a table, beyond the least number of runs.
@@ -36,7 +37,7 @@ pub(crate) struct Effort {
     pub least_runs: usize,
     /// Time for one row of the table of the service.
     pub service_row: Duration,
-    /// Relative L1 error at which the float64 truth is good enough.
+    /// Target error of the float64 truth, relative L1.
     pub truth_error: f64,
 }
 
@@ -54,7 +55,7 @@ const QUICK: Effort = Effort {
     truth_error: 1e-2,
 };
 
-/// What is measured, unless some of these are named.
+/// All benchmarks; arguments select some.
 const ROOMS: [&str; 6] = [
     "frames",
     "instances",
@@ -70,7 +71,7 @@ fn main() -> ExitCode {
     for argument in std::env::args().skip(1) {
         match argument.as_str() {
             "--quick" => quick = true,
-            // What cargo adds.
+            // Cargo adds this argument.
             "--bench" => {}
             other => {
                 let Some(room) = ROOMS.into_iter().find(|room| *room == other) else {
@@ -108,7 +109,7 @@ fn run(effort: Effort, quick: bool, rooms: &[&str]) -> Result<(), Box<dyn Error>
     report.fact("form", if quick { "quick" } else { "full" });
 
     drop(renderer);
-    // What was measured before something failed is worth having.
+    // If something fails, the results so far are still printed.
     let measured = measure(&mut report, effort, rooms);
     report.fact("took", &format!("{:.0} s", started.elapsed().as_secs_f64()));
     println!("{}", report.markdown());
@@ -121,7 +122,7 @@ fn run(effort: Effort, quick: bool, rooms: &[&str]) -> Result<(), Box<dyn Error>
 /// Puts the tables of `rooms` into the report.
 fn measure(report: &mut Report, effort: Effort, rooms: &[&str]) -> Result<(), Box<dyn Error>> {
     let mut stages = Vec::new();
-    // A renderer of its own for each scene, so that no memory of the one counts for the other.
+    // Each scene gets its own renderer, so that one scene's memory does not count for another.
     let new_renderer = || Renderer::new(&RenderConfig::default());
     if rooms.contains(&"frames") {
         let sines = frames::sine_pool(&mut new_renderer()?, effort)?;

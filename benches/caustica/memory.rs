@@ -1,4 +1,4 @@
-//! Memory: what the plan says, what the program accounts for, what the system has seen.
+//! Memory: by the plan, by the program's own account, and by the system.
 
 use caustica::cli::summary::bytes;
 use caustica::stats::MemoryStats;
@@ -12,13 +12,13 @@ pub(crate) struct Stage {
     pub what: String,
     /// By the program's own account, of one frame.
     pub frame: Option<MemoryStats>,
-    /// Largest resident set of the process during the stage, bytes; absent where the system does not tell.
+    /// Largest resident set of the process during the stage, bytes; absent where the system does not report it.
     pub resident_peak: Option<u64>,
 }
 
-/// Forgets the largest resident set so far, where the system can.
+/// Resets the largest resident set, where the system can.
 pub(crate) fn begin_stage() {
-    // Without it the peaks are those since the start: still true, and never too small.
+    // If this fails, the peaks are those since the start: never too small.
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
@@ -36,8 +36,8 @@ pub(crate) fn resident_peak() -> Option<u64> {
 pub(crate) fn table(stages: &[Stage]) -> Table {
     let mut table = Table::new(
         "Memory at the peak",
-        "Planned before anything is allocated; accounted while it runs; resident is the whole process with drivers and \
-         results, on a software driver the GPU's memory too.",
+        "Planned: before anything is allocated. Accounted: while it runs. Resident: the whole process with drivers and results, \
+        and on a software driver also the GPU's memory.",
         &["scene", "planned", "accounted", "resident"],
     );
     for stage in stages {

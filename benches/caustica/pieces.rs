@@ -1,4 +1,4 @@
-//! Long dispatches in pieces: how many pieces heavy frames are cut into, and how long the longest runs.
+//! Long dispatches in pieces: the number of pieces of heavy frames, and the time of the longest.
 
 use std::error::Error;
 
@@ -53,8 +53,8 @@ const SCENES: [Heavy; 4] = [
 /// The table of pieces.
 pub(crate) fn pieces(effort: Effort) -> Result<Table, Box<dyn Error>> {
     let note = format!(
-        "Heavy frames: ms, median (smallest..largest); the pieces of one frame, and the longest piece of all, from submission to the \
-         end as the host sees it. Pieces aim at {LONGEST_MS} ms at most."
+        "Heavy frames: ms, median (smallest..largest); the pieces of one frame, and the longest piece of all, from submission \
+        to its end as measured by the host. Pieces aim at {LONGEST_MS} ms at most."
     );
     let columns = ["scene", "made heavy by", "frame", "pieces", "longest"];
     let mut table = Table::new("Long dispatches in pieces", &note, &columns);

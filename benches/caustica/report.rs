@@ -1,4 +1,4 @@
-//! The table: in Markdown that reads well in a terminal, and in JSON for programs.
+//! The tables: in Markdown that is aligned for a terminal, and in JSON for programs.
 
 use std::fmt::Write as _;
 use std::io;
@@ -23,11 +23,11 @@ pub(crate) struct Table {
     title: String,
     note: String,
     columns: Vec<String>,
-    /// As many cells each as there are columns.
+    /// Rows; each has one cell per column.
     pub rows: Vec<Vec<Cell>>,
 }
 
-/// One place in a table.
+/// A cell of a table.
 #[derive(Clone, Debug)]
 pub(crate) enum Cell {
     /// Words.
@@ -61,7 +61,7 @@ impl Cell {
         }
     }
 
-    /// A figure with three digits that count.
+    /// A value with three significant digits.
     pub(crate) fn figure(value: f64) -> Self {
         Self::Figure {
             value,

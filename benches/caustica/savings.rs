@@ -1,4 +1,5 @@
-//! What is saved by leaving out what cannot matter, and by keeping level maps from frame to frame: each with it and without it, in turn.
+//! The time saved by skipping work that has no effect, and by keeping level maps from frame to frame: each with and without the saving,
+//! interleaved.
 
 use std::error::Error;
 use std::time::Instant;
@@ -14,11 +15,11 @@ use crate::frames::scene;
 use crate::report::{Cell, Table};
 use crate::spread::{Spread, ms};
 
-/// Frames of an animation, and how far apart.
+/// Frames of an animation, and the time between them.
 const FRAMES: usize = 60;
 const FRAME_S: f64 = 1.0 / 24.0;
 
-/// What is left out: its name, the pass that is spared, the scene with its dials, the shader, and what to put in place of what.
+/// Skipped work: its name, the affected pass, the scene with its dials, the shader file, and the text to replace with its replacement.
 type Saving = (
     &'static str,
     &'static str,
@@ -58,10 +59,10 @@ const SAVINGS: [Saving; 2] = [
 /// The table of savings.
 pub(crate) fn savings(effort: Effort) -> Result<Table, Box<dyn Error>> {
     let mut table = Table::new(
-        "What is left out or kept: time",
-        "With the saving and without it, in turn; ms, median (smallest..largest), and the ratio of the medians. The first rows are \
-         GPU time of the pass that is spared, the last is the time of a frame of an animation of 60 with moving waves, whose level \
-         map is built once or every time.",
+        "Savings: time",
+        "With and without each saving, interleaved; ms, median (smallest..largest), and the ratio of the medians. The first \
+        rows are the GPU time of the affected pass. The last is the time of a frame in an animation of 60 with moving waves, \
+        whose level map is built once or for every frame.",
         &["what", "measured", "with", "without", "without ÷ with"],
     );
     for (what, pass, (path, dials), (file, from, to)) in SAVINGS {
@@ -103,7 +104,7 @@ fn row(what: &str, measured: &str, [with, without]: [Vec<f64>; 2]) -> Vec<Cell> 
     ]
 }
 
-/// Frames whose level map is kept, and frames before each of which it is forgotten.
+/// Frames whose level map is kept, and frames before each of which it is dropped.
 fn animation(effort: Effort) -> Result<Vec<Cell>, Box<dyn Error>> {
     let dials = [
         ("/quality/water_cells", "128"),

@@ -1,4 +1,4 @@
-//! What requests cost: the real service on a loopback port, asked over real connections.
+//! The cost of requests: the real service on a loopback port, over real connections.
 
 use std::error::Error;
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
@@ -24,7 +24,7 @@ use crate::spread::{Spread, ms};
 /// Requests of each connection before the clock starts.
 const WARM_UP: usize = 3;
 
-/// What the service gave.
+/// Results of the service.
 #[derive(Debug)]
 pub(crate) struct Service {
     pub table: Table,
@@ -35,8 +35,8 @@ pub(crate) struct Service {
 pub(crate) fn requests(effort: Effort) -> Result<Service, Box<dyn Error>> {
     let mut table = Table::new(
         "Service",
-        "`POST /v1/render` of the sine pool with 32 water cells on 32 × 32 texels, EXR; kept-alive connections, no scene \
-         twice; ms per request.",
+        "`POST /v1/render` of the sine pool with 32 water cells on 32 × 32 texels, EXR; keep-alive connections, every scene \
+        different; ms per request.",
         &[
             "connections",
             "requests",
@@ -59,7 +59,7 @@ pub(crate) fn requests(effort: Effort) -> Result<Service, Box<dyn Error>> {
     let runtime = Runtime::new()?;
     let running = Running::start(&runtime)?;
     let rows = running.rows(&scenes, effort);
-    // Whatever came of it: a process that ends beside a live GPU thread tears the driver down under that thread.
+    // Stop the service also after an error: if the process ends while the GPU thread runs, the driver is unloaded under that thread.
     let stopped = runtime.block_on(running.stop());
     table.rows = rows?;
     stopped?;
@@ -73,7 +73,7 @@ pub(crate) fn requests(effort: Effort) -> Result<Service, Box<dyn Error>> {
     })
 }
 
-/// Scenes that differ in their moment, so that none is answered from an earlier one.
+/// Scenes with different times, so that no answer can come from an earlier one.
 #[derive(Debug)]
 struct Scenes {
     first: Value,
@@ -97,7 +97,7 @@ struct Running {
     served: tokio::task::JoinHandle<Result<(), caustica::http::ServeError>>,
 }
 
-/// What a load gave.
+/// Results of a load.
 #[derive(Debug)]
 struct Load {
     times: Spread,

@@ -1,13 +1,13 @@
-//! Figures of several runs.
+//! Statistics over several runs.
 
 use std::time::{Duration, Instant};
 
 use crate::Effort;
 
-/// Most runs behind a figure.
+/// Most runs behind a value.
 const MOST_RUNS: usize = 200;
 
-/// What several runs gave.
+/// The values of several runs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spread {
     /// In order of size.
@@ -15,18 +15,18 @@ pub(crate) struct Spread {
 }
 
 impl Spread {
-    /// Sums up runs; without any, every figure is NaN.
+    /// Summarises runs; without any, all statistics are NaN.
     pub(crate) fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
         Self { sorted: values }
     }
 
-    /// How many runs.
+    /// The number of runs.
     pub(crate) fn runs(&self) -> usize {
         self.sorted.len()
     }
 
-    /// The middle run.
+    /// The median.
     pub(crate) fn median(&self) -> f64 {
         self.percentile(50.0)
     }

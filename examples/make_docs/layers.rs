@@ -1,4 +1,4 @@
-//! What each layer of a level map buys on the sides of a box, and costs.
+//! Measures the accuracy and cost of each layer of a level map on the sides of a box.
 
 use std::cell::RefCell;
 use std::error::Error;
@@ -17,7 +17,7 @@ use tokio_util::sync::CancellationToken;
 
 /// Pixels of the truth along x and y.
 const SIZE: [usize; 2] = [64, 48];
-/// Pixels of the renderer for each of those along both: the truth is the mean over a pixel, a picture is what its middle shows.
+/// Pixels of the renderer for each of those along both: the truth is the mean over a pixel, a picture shows its centre.
 const FINER: usize = 4;
 /// Timed runs of each number of layers.
 const RUNS: usize = 5;
@@ -39,7 +39,7 @@ fn box_sides(layers: u32, finer: usize) -> Result<ResolvedScene, Box<dyn Error>>
     Ok(scene_file::load(&args, None, &Limits::default())?.resolved)
 }
 
-/// A pixel of the truth: mean irradiance there, and the normal if all of it lies on one face of the box.
+/// A pixel of the truth: mean irradiance there, and the normal if the whole pixel shows one face of the box.
 fn coarse(frame: &Frame) -> Vec<([f64; 3], Option<[f32; 3]>)> {
     let at = |name: LayerName, pixel: usize| -> [f32; 3] {
         let layer = &frame.layers[&name];
@@ -66,7 +66,7 @@ fn coarse(frame: &Frame) -> Vec<([f64; 3], Option<[f32; 3]>)> {
         .collect()
 }
 
-/// Measures, and says it in Markdown.
+/// Measures, and returns the chapter in Markdown.
 pub(crate) fn chapter(renderer: &RefCell<Renderer>) -> Result<String, Box<dyn Error>> {
     let settings = TruthSettings {
         target_error: Some(2e-2),
@@ -76,10 +76,10 @@ pub(crate) fn chapter(renderer: &RefCell<Renderer>) -> Result<String, Box<dyn Er
     };
     let truth = truth(&box_sides(1, 1)?, &settings, &|_| {}, &|| false)?;
     let mut text = format!(
-        "\n## Layers\n\n`scenes/box_sides.json`: a box under steep waves and a sun 35° high, seen from its sides. Relative L1 errors of the \
-        irradiance in the picture, over the pixels that one upright side fills, against a reference that is {} off by its own \
-        estimate; GPU time of a frame with level maps cached, median of {RUNS} interleaved runs; bytes by our own account and the \
-        allocator's.\n\n\
+        "\n## Layers\n\n`scenes/box_sides.json`: a box under steep waves and a sun 35° high, seen from the side. Relative L1 errors of the \
+        irradiance in the picture, over the pixels that show one upright side only, against a reference that is {} off by its \
+        own estimate; GPU time of a frame with level maps cached, median of {RUNS} interleaved runs; memory by our own account \
+        and by the allocator.\n\n\
         | layers | error, upright sides | error, side away from the sun | ms | MiB | allocator MiB | level maps MiB |\n\
         |---:|---:|---:|---:|---:|---:|---:|\n",
         percent(truth.relative_error)
@@ -126,8 +126,8 @@ pub(crate) fn chapter(renderer: &RefCell<Renderer>) -> Result<String, Box<dyn Er
         );
     }
     text.push_str(
-        "\nOne layer leaves the side away from the sun dark, the second lights it; a box has two surfaces, so the third and fourth cost memory \
-        and buy nothing.\n",
+        "\nOne layer leaves the side away from the sun dark, the second lights it. A box has two surfaces along the light, so \
+        the third and fourth layer cost memory and gain nothing.\n",
     );
     Ok(text)
 }

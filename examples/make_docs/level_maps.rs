@@ -1,4 +1,4 @@
-//! `docs/level-maps.md`: the thesis's experiments in our numbers.
+//! Writes `docs/level-maps.md`: the thesis's experiments with our measurements.
 
 use std::cell::RefCell;
 use std::error::Error;
@@ -13,20 +13,20 @@ use tokio_util::sync::CancellationToken;
 
 use super::{layers, residual};
 
-/// What to ask for to have this page only.
+/// The argument that writes this page only.
 pub(crate) const NAME: &str = "level_maps";
 
 /// Numbers of planes, as in the page's tables.
 const PLANES: [u32; 6] = [3, 9, 25, 50, 75, 101];
-/// Of the shapes of the catalogue each second is measured, those that are shown one by one besides, and the one of most triangles:
-/// more than the thesis's 30.
+/// Every second shape of the catalogue is measured, and also those with a section of their own and the one with most triangles: more than
+/// the thesis's 30.
 const EACH: usize = 2;
-/// The shape of most triangles.
+/// The shape with most triangles.
 const LARGEST: &str = "terrain";
-/// What is measured of each shape lies here, so that a run that was broken off goes on where it was.
+/// Folder of the measurements of each shape, so that an interrupted run can continue.
 const FOUND: &str = "out/level-maps";
 
-/// Measures all shapes and writes the page with the plots of those that it shows one by one.
+/// Measures all shapes and writes the page with the plots of those with a section of their own.
 pub(crate) fn write() -> Result<(), Box<dyn Error>> {
     let meshes: Vec<&str> = shapes::ALL
         .iter()
@@ -49,7 +49,7 @@ pub(crate) fn write() -> Result<(), Box<dyn Error>> {
     write_page(&found, &renderer)
 }
 
-/// A shape's figures: those of an earlier run of this version with the same settings, or measured now.
+/// A shape's measurements: those of an earlier run of this version with the same settings, or measured now.
 fn kept_or_measured(
     name: &str,
     renderer: &RefCell<Renderer>,

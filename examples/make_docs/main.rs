@@ -1,9 +1,9 @@
-//! Writes `docs/accuracy.md`: what each dial buys on the example scenes, measured by the program itself; and `docs/level-maps.md`:
-//! the thesis's experiments in our numbers; and `docs/hard-cases.md`. `accuracy`, `level_maps` or `hard_cases` do only those, names of
-//! scenes print what the page would say of them.
+//! Writes `docs/accuracy.md` (the effect of each dial on the example scenes, measured by the program itself), `docs/level-maps.md`
+//! (the thesis's experiments with our measurements) and `docs/hard-cases.md`. The arguments `accuracy`, `level_maps` and `hard_cases`
+//! write only that page; names of scenes print the page's text about them.
 //!
-//! `make docs` runs it; truths are kept in `out/truth`, so a second run only renders. Times are those of the machine it runs on,
-//! which the page names.
+//! `make docs` runs it. Truths are kept in `out/truth`, so a second run only renders. Times are of the machine that it runs on, which
+//! the page names.
 
 mod hard_cases;
 mod layers;
@@ -11,7 +11,7 @@ mod level_maps;
 mod page;
 mod residual;
 mod scenes;
-mod wishes;
+mod targets;
 
 use std::error::Error;
 use std::path::Path;
@@ -25,7 +25,7 @@ use tokio_util::sync::CancellationToken;
 
 use page::Chapter;
 
-/// What to ask for to have the page of dials only.
+/// The argument that writes the page of dials only.
 const ACCURACY: &str = "accuracy";
 /// Timed runs of each setting.
 const RUNS: u32 = 5;
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             ..TruthSettings::default()
         };
         let truth = truth(&resolved, &settings, &|_| {}, &|| false)?;
-        // A renderer of its own for each scene, so that no memory of the one counts for the other.
+        // Each scene gets its own renderer, so that one scene's memory does not count for another.
         let mut renderer = Renderer::new(&RenderConfig::default())?;
         let sweeps = SweepSettings {
             dials: scene.dials(&resolved)?,
@@ -78,14 +78,14 @@ fn main() -> Result<(), Box<dyn Error>> {
                 true
             },
         )?;
-        let wishes = wishes::grant(&mut renderer, &resolved, &truth, RUNS)?;
+        let targets = targets::measure(&mut renderer, &resolved, &truth, RUNS)?;
         let folder = Path::new("docs/accuracy").join(scene.name);
         write_study(&folder, &study, &images)?;
         drop_copies(&folder)?;
         chapters.push(Chapter {
             scene,
             study,
-            wishes,
+            targets,
         });
     }
     if is_whole_page {
@@ -97,8 +97,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Keeps what the page needs light: plots as vector graphics, sheets of errors for the cells only, and reports without links to
-/// what is not there.
+/// Keeps the page's files small: plots as vector graphics, error images for the cells only, and reports without links to missing
+/// files.
 fn drop_copies(folder: &Path) -> Result<(), Box<dyn Error>> {
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();

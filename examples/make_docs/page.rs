@@ -10,24 +10,24 @@ use caustica::scene::{Output, Quality};
 use caustica::tuning::ladder;
 
 use crate::scenes::Scene;
-use crate::wishes::Wish;
+use crate::targets::Target;
 
-/// Estimates are judged where the true error is at least this many times the truth's own.
+/// Estimates are evaluated where the true error is at least this many times the truth's own.
 const CLEAR: f64 = 3.0;
 
-/// What was found out about a scene.
+/// Measurements of a scene.
 #[derive(Debug)]
 pub(crate) struct Chapter {
     pub scene: &'static Scene,
     pub study: Study,
-    pub wishes: Vec<Wish>,
+    pub targets: Vec<Target>,
 }
 
 /// All of `docs/accuracy.md`.
 pub(crate) fn write(chapters: &[Chapter]) -> String {
     let mut page = head(chapters);
     page += &dials(chapters);
-    page += &wishes(chapters);
+    page += &targets(chapters);
     page += &estimates(chapters);
     page += &orders(chapters);
     page += &shadow_edges(chapters);
@@ -55,33 +55,33 @@ fn head(chapters: &[Chapter]) -> String {
     });
     format!(
         "# What accuracy costs in time\n\n\
-         Written by `make docs` from the program's own measurements: every number below is of one run on\n{machine}.\n\n\
-         Errors are relative L1 errors of the irradiance, Σ|E − truth| / Σ truth, against a float64 reference that follows single\n\
-         rays and shares no code with the renderer but the formulas, the waves and the scene. Times are medians of warm frames, from\n\
-         the scene to the finished linear result; a GPU is far faster, but what is cheap against what stays much the same.\n\
-         `caustica accuracy SCENE -o FOLDER` makes such a study of any scene.\n"
+         Written by `make docs` from the program's own measurements. Every number below is from one run on\n{machine}.\n\n\
+         Errors are relative L1 errors of the irradiance, Σ|E − truth| / Σ truth, against a float64 reference that traces single\n\
+         rays and shares only the formulas, the waves and the scene with the renderer. Times are medians of warm frames, from the\n\
+         scene to the finished linear result. A GPU is far faster, but the relative cost of the settings is much the same.\n\
+         `caustica accuracy SCENE -o FOLDER` makes such a study of any scene. [The glossary](glossary.md) explains the terms.\n"
     )
 }
 
 fn dials(chapters: &[Chapter]) -> String {
     let mut text = "\n## Where to set the dials\n\n\
-     - Ask for what you want: `quality.target_error` picks the dials for an error, `quality.time_budget_ms` for a time. The table\n  \
-       below shows what comes of it.\n\
-     - **`water_cells`** is the dial that matters. Twice the cells cost two to four times the time and divide the error by about four.\n  \
-       64 is for a quick look, 256 for pictures, 512 and more for ground truth. Steep or deep water and a low sun need more: what counts\n  \
-       is how large a cell's light is where it lands.\n\
+     - Request an error or a time: `quality.target_error` chooses the dials for an error, `quality.time_budget_ms` for a time. The\n  \
+     table below shows the results.\n\
+     - **`water_cells`** matters most. Twice the cells cost two to four times the time and divide the error by about four.\n  \
+     64 is enough for a preview, 256 for pictures, 512 and more for ground truth. Steep or deep water and a low sun need more, because\n  \
+     the footprints of the cells are larger there.\n\
      - **`map_texels`** (views only) decides how sharp caustics are. Give the floor's map about as many texels as the picture has pixels\n  \
-       across the floor; fewer blur, and no number of cells brings back what is blurred.\n\
-     - **`split_levels`** sharpens the shadows of meshes, each level more with less gain for more time"
+     across the floor. Fewer texels blur, and more cells do not undo the blur.\n\
+     - **`split_levels`** sharpens the shadows of meshes. Each further level gains less and takes more time"
         .to_owned();
     text += &levels(chapters);
-    text += "  Without meshes it costs and changes nothing.\n\
-     - **`level_map_texels`** is the resolution of light *on* meshes. Their shadows hardly depend on it: edges are\n  \
-       found on the triangles themselves; but what is thinner than a texel lets light through.\n";
+    text += "  Without meshes it has no cost and no effect.\n\
+     - **`level_map_texels`** is the resolution of light *on* meshes. Their shadows hardly depend on it, because edges are\n  \
+     found on the triangles themselves; but parts thinner than a texel let light through.\n";
     text
 }
 
-/// What each level of `split_levels` bought, and what the ladder takes.
+/// The effect of each level of `split_levels`, and the levels that the ladder uses.
 fn levels(chapters: &[Chapter]) -> String {
     let mut text = String::new();
     for (from, name) in ["first", "second", "third", "fourth"]
@@ -121,7 +121,7 @@ fn levels(chapters: &[Chapter]) -> String {
     let rung = |cells| ladder::rung(&Quality::default(), &Output::default(), cells).split_levels;
     let _ = writeln!(
         text,
-        ".\n  `target_error` takes {} with 256 cells, {} with 512 and {} with 1024.",
+        ".\n  `target_error` uses `split_levels` {} with 256 cells, {} with 512 and {} with 1024.",
         rung(256),
         rung(512),
         rung(1024)
@@ -139,41 +139,41 @@ fn cheapest(study: &Study, target: f64) -> Option<&Point> {
         .min_by(|a, b| a.cost.wall_ms.median.total_cmp(&b.cost.wall_ms.median))
 }
 
-fn wishes(chapters: &[Chapter]) -> String {
-    let mut text = "\n## Asking for an error\n\n\
-        What `quality.target_error` chose, what the error then truly was, and what the frame cost beside the cheapest setting of the\n\
-        sweeps below that stays under the target. *Choosing* is what the looks cost on top, once.\n\n\
-        | scene | asked | cells chosen | true error | kept | frame (ms) | cheapest of the sweeps (ms) | ratio | choosing (ms) |\n\
+fn targets(chapters: &[Chapter]) -> String {
+    let mut text = "\n## Requesting an error\n\n\
+        What `quality.target_error` chose, the true error with these dials, and the frame's time compared with the cheapest setting of the\n\
+        sweeps below that stays under the target. *Choosing* is the extra time for trial renders in one request.\n\n\
+        | scene | target | cells chosen | true error | met | frame (ms) | cheapest of the sweeps (ms) | ratio | choosing (ms) |\n\
         | --- | ---: | ---: | ---: | :---: | ---: | ---: | ---: | ---: |\n"
         .to_owned();
     for chapter in chapters {
-        for wish in &chapter.wishes {
-            let kept = match (wish.error <= wish.target, wish.chosen.meets) {
+        for target in &chapter.targets {
+            let kept = match (target.error <= target.target, target.chosen.meets) {
                 (true, true) => "yes",
-                (true, false) => "yes, though not promised",
-                (false, false) => "no, and said so",
+                (true, false) => "yes, though not predicted",
+                (false, false) => "no, with a warning",
                 (false, true) => "**no**",
             };
-            let cheapest = cheapest(&chapter.study, wish.target).map(|p| p.cost.wall_ms.median);
+            let cheapest = cheapest(&chapter.study, target.target).map(|p| p.cost.wall_ms.median);
             let _ = writeln!(
                 text,
                 "| {} | {} | {} | {} | {kept} | {} | {} | {} | {} |",
                 chapter.scene.name,
-                percent(wish.target),
-                wish.chosen.water_cells,
-                percent(wish.error),
-                significant(wish.frame_ms, 3),
+                percent(target.target),
+                target.chosen.water_cells,
+                percent(target.error),
+                significant(target.frame_ms, 3),
                 cheapest.map_or_else(|| "none".to_owned(), |ms| significant(ms, 3)),
-                cheapest.map_or_else(|| "–".to_owned(), |ms| significant(wish.frame_ms / ms, 2)),
-                significant(wish.choosing_ms, 3),
+                cheapest.map_or_else(|| "–".to_owned(), |ms| significant(target.frame_ms / ms, 2)),
+                significant(target.choosing_ms, 3),
             );
         }
     }
-    text += "\nPredicted times were, in the same runs, ";
+    text += "\nIn the same runs, predicted times were ";
     let ratios: Vec<f64> = chapters
         .iter()
-        .flat_map(|chapter| &chapter.wishes)
-        .map(|wish| wish.chosen.predicted_ms / wish.frame_ms)
+        .flat_map(|chapter| &chapter.targets)
+        .map(|target| target.chosen.predicted_ms / target.frame_ms)
         .collect();
     text += &range(&ratios);
     text += " of the measured ones.\n";
@@ -194,10 +194,10 @@ fn spread(ratios: &[f64]) -> String {
 
 fn estimates(chapters: &[Chapter]) -> String {
     let mut text = "\n## A frame's own estimate\n\n\
-        `quality.estimate_error` does the light once more with two fifths of the cells along a side (or somewhat fewer, in whole\n\
-        workgroups), which is a sixth of their work or less, and with a quarter or a sixteenth of the floor's texels (all of them where\n\
-        their number does not halve), and compares. Estimate over true error, over all settings below whose error is at least three\n\
-        times the truth's own:\n\n\
+        `quality.estimate_error` renders the light a second time with two fifths of the cells along a side (or somewhat fewer, in whole\n\
+        workgroups), which is a sixth of the work or less, and with a quarter or a sixteenth of the floor's texels (all of them where\n\
+        their number cannot be halved). It then compares the two. Estimate over true error, over all settings below whose error is at least\n\
+        three times the truth's own:\n\n\
         | scene | settings | estimate ÷ true error |\n| --- | ---: | ---: |\n"
         .to_owned();
     for chapter in chapters {
@@ -227,8 +227,8 @@ fn estimates(chapters: &[Chapter]) -> String {
 
 fn orders(chapters: &[Chapter]) -> String {
     let mut text = "\n## Orders of convergence\n\n\
-        The error falls as the dial to minus this power. Fitted to the settings whose error is at least three times the truth's own.\n\
-        `split_levels` counts halvings, so it has no order but a factor by which the whole error falls per level.\n\n\
+        The error falls as the dial to minus this power, fitted to the settings whose error is at least three times the truth's own.\n\
+        `split_levels` counts halvings, so instead of an order it has a factor by which the whole error falls per level.\n\n\
         | scene | dial | order |\n| --- | --- | ---: |\n"
         .to_owned();
     for chapter in chapters {
@@ -249,25 +249,25 @@ fn orders(chapters: &[Chapter]) -> String {
             }
         }
     }
-    text += "\nBeams between exact rays, laid on texels by exact coverage, are second order in `water_cells`: where a cell's light is bent, the\n\
-        straight lines between its corners miss by the square of its size. Fits read a little below 2 where the fewest cells do not yet\n\
-        know the waves. The rest is not second order, and cannot be:\n\n\
-        - `map_texels` of a view: between its texels a map is a straight line, but caustics are edges, bright without bound on one side.\n  \
-          What blur of width w takes from an edge that rises as 1/√x falls with the first power of w or less.\n\
-        - `split_levels`: an unresolved piece is booked by thirds, so what lands in the wrong place is as wide as the beam, half as wide with each\n  \
-          level. That is only a part of the error: the table of shadow edges shows it fall until the cells' own error there is left, and\n  \
-          the whole error falls far less.\n\
-        - `water_cells` of a view: the map's texels set a floor under it.\n\
-        - flat water has no error to converge: what is left is single precision.\n";
+    text += "\nBeams between exact rays, deposited on texels by exact coverage, are second order in `water_cells`: the straight edges between a\n\
+    cell's corners differ from the curved light by the square of the cell's size. Fits are a little below 2 where the fewest cells do not\n\
+    yet resolve the waves. The other dials are not second order, and cannot be:\n\n\
+        - `map_texels` of a view: a map is interpolated linearly between its texels, but caustics are edges with unbounded brightness on one\n  \
+        side. The error from blurring an edge that rises as 1/√x with width w falls with the first power of w or less.\n\
+        - `split_levels`: an unresolved piece of a beam is deposited in thirds, so misplaced light is as wide as the piece, and half as wide\n  \
+        with each level. That is only a part of the error: the table of shadow edges shows how it falls until only the cells' own error\n  \
+        remains there, and the whole error falls far less.\n\
+        - `water_cells` of a view: the map's texels limit the error from below.\n\
+        - flat water has no error that could converge: only single precision remains.\n";
     text
 }
 
 fn shadow_edges(chapters: &[Chapter]) -> String {
     let mut text = "\n## Shadow edges\n\n\
-        The share of the error within two texels (of a view: pixels) of a mesh's shadow edge. Beams that straddle receivers are halved\n\
-        only where they still do. Each level halves how far they reach across the edge; what the cells themselves do wrong there stays,\n\
-        so the gain ends after a few.\n\n\
-        | scene | split_levels | L1 | of it at shadow edges | at shadow edges (L1) | rest (L1) | frame (ms) |\n\
+        The share of the error within two texels (for a view: pixels) of a mesh's shadow edge. Only pieces of beams that still straddle\n\
+        receivers are split further. Each level halves how far they reach across the edge. The cells' own error there remains, so further\n\
+        levels gain nothing after a few.\n\n\
+        | scene | split_levels | L1 | share at shadow edges | at shadow edges (L1) | rest (L1) | frame (ms) |\n\
         | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
         .to_owned();
     for chapter in chapters {
@@ -314,7 +314,7 @@ fn scene(chapter: &Chapter) -> String {
     let mut text = format!(
         "\n### {name}\n\n{}\n\nTruth: {}; {} rays, {} s, own error {}.\n\n\
          ![Error against time of {name}](accuracy/{name}/error_time.svg)\n\n\
-         ![Where {name} errs](accuracy/{name}/errors_water_cells.png)\n\n",
+         ![Error images of {name}](accuracy/{name}/errors_water_cells.png)\n\n",
         scene.about,
         study.truth.what,
         significant(study.truth.rays as f64, 2),
@@ -331,7 +331,7 @@ fn scene(chapter: &Chapter) -> String {
     }
     let _ = writeln!(
         text,
-        "\n[All figures of {name}](accuracy/{name}/study.md): errors by five measures, times by pass, memory."
+        "\n[All measurements of {name}](accuracy/{name}/study.md): errors by five measures, times by pass, memory."
     );
     text
 }

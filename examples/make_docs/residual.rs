@@ -1,5 +1,5 @@
-//! Why the error of reference planes stays when planes are added: it is split into the map's rim, where texels are covered in part,
-//! and the rest, and measured against texels, planes and the height of the waves.
+//! Why the error of reference planes does not go to 0 with more planes. The error is split into the map's rim, where texels are partly
+//! covered, and the rest, and measured for several numbers of texels and planes and heights of the waves.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use caustica::accuracy::LinearImage;
-use caustica::lab::experiment::{Way, scene};
+use caustica::lab::experiment::{Technique, scene};
 use caustica::lab::study::error_images::error_images;
 use caustica::lab::study::study::{
     CostFigures, ErrorFigures, Point, SpreadMs, Study, StudyImages, Sweep, TruthFigures,
@@ -20,7 +20,7 @@ use caustica::scene::{LayerName, ResolvedScene, Wave};
 use serde_json::json;
 use tokio_util::sync::CancellationToken;
 
-/// A solid whose surface turns every way, one of flat faces, and a single flat face.
+/// A solid with normals in all directions, one of flat faces, and a single flat face.
 const SHAPES: [&str; 3] = ["sphere", "box", "plate"];
 /// Texels along each side of the maps, the share of the waves' height, and the error that the reference may have.
 const SETTINGS: [(u32, f64, f64); 4] = [
@@ -36,20 +36,20 @@ const WATER_CELLS: u32 = 96;
 struct Parts {
     inner: f64,
     rim: f64,
-    /// Too much (above 0) or too little light on the rim.
+    /// Excess (above 0) or missing light on the rim.
     rim_signed: f64,
 }
 
-/// Measures, draws the errors of the shapes into `folder`, and says it in Markdown.
+/// Measures, draws the errors of the shapes into `folder`, and returns the chapter in Markdown.
 pub(crate) fn chapter(
     renderer: &RefCell<Renderer>,
     folder: &Path,
 ) -> Result<String, Box<dyn Error>> {
     let mut text = "\n## Where the error of planes comes from\n\n\
-        Planes and hits on the same maps against the float64 reference, all in shares of the light on the map: `rim` is the error in texels \
-        that have one beside them without a surface, `inner` that in all others. 96² water cells; the reference's own error is in all of \
-        them.\n\n\
-        | shape | texels | waves | planes: 9 inner | 25 | 101 | 401 | 401 rim | of it too bright | hits inner | rim | reference |\n\
+        Planes and hits on the same maps against the float64 reference, as shares of the light on the map: `rim` is the error \
+        in texels next to a texel without a surface, `inner` the error in all others. 96² water cells; all values include the \
+        reference's own error.\n\n\
+        | shape | texels | waves | planes: 9 inner | 25 | 101 | 401 | 401 rim | signed rim | hits inner | rim | reference |\n\
         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
         .to_owned();
     for name in SHAPES {
@@ -67,18 +67,18 @@ pub(crate) fn chapter(
             let truth = truth(&base, &settings, &|_| {}, &|| false)?;
             let rim = rim(&truth);
             let (mut images, mut costs) = (Vec::new(), Vec::new());
-            let mut parts_of = |way: Way| -> Result<Parts, Box<dyn Error>> {
-                let (image, ms) = render(renderer, &way.of(&base))?;
+            let mut parts_of = |technique: Technique| -> Result<Parts, Box<dyn Error>> {
+                let (image, ms) = render(renderer, &technique.of(&base))?;
                 let parts = parts(&image, &truth, &rim);
                 costs.push((parts.inner + parts.rim, ms));
                 images.push(image);
                 Ok(parts)
             };
             let planes = PLANES
-                .map(|planes| parts_of(Way::Smart(planes)))
+                .map(|planes| parts_of(Technique::Smart(planes)))
                 .into_iter()
                 .collect::<Result<Vec<_>, _>>()?;
-            let hit = parts_of(Way::Hit)?;
+            let hit = parts_of(Technique::Hit)?;
             let inner: Vec<String> = planes.iter().map(|p| percent(p.inner)).collect();
             let most = &planes[PLANES.len() - 1];
             let _ = writeln!(
@@ -108,20 +108,22 @@ pub(crate) fn chapter(
     Ok(text)
 }
 
-const EXPLANATION: &str = "\nThree errors add up, and only the first goes with the distance d of the planes:\n\n\
-    1. A beam lights a texel at the plane's depth, up to d/2 from the surface. This falls with d, and from about 25 planes on what is \
-    left is the next two.\n\
-    2. A stair of planes has treads and no risers. With a the axis of the level map, n the normal and w the way of a ray, a texel takes \
-    what goes through its tread, in proportion to a·w; turned to the surface by n·a that is (n·a)(a·w), where n·w is right. The two \
-    differ by tan θ tan δ for a slope of θ and a ray δ off the axis: neither d nor texels are in it. Halved waves halve \
-    δ and with it `inner`; more texels do not lessen it; a face across the axis has none of it. On the steep parts a tilted ray goes \
-    between two treads, or through both. `tests/gpu/planes.rs` holds a tilted plate under evenly tilted water to this formula.\n\
-    3. On the rim a texel counts as covered when its middle is, and takes the light of all of it. That is `rim`: at least halved with every \
-    doubling of the texels, and not changed by planes.\n\n\
-    All three are in the method: slice images have the same treads and the same rim, and agree with level maps to the byte but for \
-    texels on a border of slices. Placement by hits has none of them, as it takes the surface itself, and is what mends them.\n";
+const EXPLANATION: &str = "\nThree errors add up, and only the first depends on the distance d between planes:\n\n\
+    1. A beam lights a texel at the plane's depth, up to d/2 from the surface. This error falls with d, and from about 25 \
+    planes on only the other two remain.\n\
+    2. The planes form a staircase that has treads but no risers. Let a be the axis of the level map, n the normal and w the \
+    direction of a ray. A texel receives the light that goes through its tread, in proportion to a·w. Converted to the surface \
+    by n·a this is (n·a)(a·w), while the correct factor is n·w. The two differ by tan θ tan δ for a slope of θ and a ray δ off \
+    the axis, independent of d and of the size of texels. Halved waves halve δ and with it `inner`; more texels do not reduce \
+    it; a face perpendicular to the axis does not have it. On steep parts a tilted ray passes between two treads, or through \
+    both. `tests/gpu/planes.rs` checks this formula with a tilted plate under evenly tilted water.\n\
+    3. On the rim a texel counts as covered if its centre is covered, and then receives the light of the whole texel. This is \
+    `rim`: it is at least halved with every doubling of the texels, and does not depend on planes.\n\n\
+    All three are properties of the method: slice images have the same treads and the same rim, and agree with level maps to \
+    the byte except for texels on a border of slices. Placement by hits has none of the three, because it uses the surface \
+    itself.\n";
 
-/// Texels with a surface that have a neighbour without.
+/// Texels with a surface that have a neighbour without one.
 fn rim(truth: &Truth) -> Vec<bool> {
     let (width, height) = (i64::from(truth.width), i64::from(truth.height));
     let has = |x: i64, y: i64| {

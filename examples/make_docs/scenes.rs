@@ -8,16 +8,16 @@ use caustica::config::Limits;
 use caustica::lab::study::dial::{Dial, DialError};
 use caustica::scene::ResolvedScene;
 
-/// A scene and how well its truth has to be known.
+/// A scene and the required accuracy of its truth.
 #[derive(Debug)]
 pub(crate) struct Scene {
     /// File name without `.json`.
     pub name: &'static str,
-    /// What is hard about it.
+    /// What is difficult about it.
     pub about: &'static str,
     /// Relative L1 error of the truth.
     pub truth_error: f64,
-    /// Sweeps other than those that the scene itself calls for.
+    /// Sweeps that replace the scene's default ones.
     pub dials: Option<&'static [&'static str]>,
 }
 
@@ -35,25 +35,25 @@ impl Scene {
 pub(crate) const ALL: [Scene; 7] = [
     Scene {
         name: "flat",
-        about: "Flat water, absorption: every beam has the same footprint, and the answer is one number.",
+        about: "Flat water with absorption: every beam has the same footprint, and the result is one number.",
         truth_error: 1e-5,
         dials: None,
     },
     Scene {
         name: "sine_pool",
-        about: "Three sines over a floor past the first focus: the design's own yardstick.",
+        about: "Three sines over a floor below the first focus: the scene that the design is measured by.",
         truth_error: 5e-4,
         dials: None,
     },
     Scene {
         name: "steep_pool",
-        about: "Four steeper sines over a floor of 4 m: light that has folded over itself several times.",
+        about: "Four steeper sines over a floor at 4 m depth: the light has folded over itself several times.",
         truth_error: 8e-4,
         dials: None,
     },
     Scene {
         name: "low_sun",
-        about: "A sun 12° over the horizon: long ways through the water, cells drawn out into needles.",
+        about: "A sun 12° above the horizon: long paths through the water, and very long, thin footprints.",
         truth_error: 8e-4,
         dials: None,
     },
@@ -75,7 +75,7 @@ pub(crate) const ALL: [Scene; 7] = [
     },
     Scene {
         name: "teapot_pool",
-        about: "What a camera sees of the pool with the teapot, pixel by pixel, meshes and all.",
+        about: "A camera view of the pool with the teapot, compared pixel by pixel, meshes included.",
         truth_error: 3e-3,
         // Frames of seconds: fewer of them.
         dials: Some(&[

@@ -1,17 +1,17 @@
-//! Plants errors in the project, one at a time, and sees that its tests and hard cases notice each.
+//! Plants errors in the project, one at a time, and checks that tests or hard cases catch each.
 //!
-//! Those in shaders are planted in memory, and the hard cases of all families are rendered with them: a minute each. Those in Rust are
-//! planted in a copy of the sources, all asleep, and the tests are built there once and run with one plant awake at a time.
+//! Errors in shaders are planted in memory, and the hard cases of all families are rendered with each: a minute per error. Errors in Rust
+//! are planted in a copy of the sources, all inactive. The tests are built there once and run with one plant active at a time.
 //!
-//! `make mutants` runs all and writes `docs/mutants.md`. With words behind it (`cargo run --release --example mutants -- refract.rs`)
-//! only the plants run whose file or description holds one of them, and nothing is written. Exit code 1 if one survives, or turns red
-//! what it has nothing to do with.
+//! `make mutants` runs all and writes `docs/mutants.md`. With arguments (`cargo run --release --example mutants -- refract.rs`)
+//! only plants run whose file or description contains one of them, and nothing is written. The exit code is 1 if a plant is not caught, or
+//! if an unrelated case fails.
 //!
-//! * `shader_plants`, `plants`: what is planted;
+//! * `shader_plants`, `plants`: the planted errors;
 //! * `shader_trial`: rendering with planted shaders;
-//! * `tree`: the copy that Rust is planted in;
-//! * `trial`: building and testing that;
-//! * `table`: what came of it.
+//! * `tree`: the copy of the sources for errors in Rust;
+//! * `trial`: building and testing that copy;
+//! * `table`: the page of results.
 
 mod plants;
 mod shader_plants;
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Whether every plant was noticed.
+/// Whether every plant was caught.
 fn run() -> Result<bool, Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let is_wanted = |file: &str, what: &str| {
@@ -58,7 +58,7 @@ fn run() -> Result<bool, Box<dyn Error>> {
     let in_rust: Vec<&Plant> = in_rust.filter(|p| is_wanted(p.file, p.what)).collect();
     if in_shaders.is_empty() && in_rust.is_empty() {
         return Err(format!(
-            "no plant's file or description holds {}",
+            "no plant's file or description contains {}",
             words.join(" or ")
         )
         .into());
@@ -89,7 +89,7 @@ fn plant_shaders(plants: &[&ShaderPlant]) -> Result<Vec<Noticed>, Box<dyn Error>
         let red: Vec<&str> = noticed.red.iter().map(|case| case.name).collect();
         eprintln!("  red: {}", red.join(", "));
         if !noticed.missing.is_empty() {
-            eprintln!("  NOT NOTICED by {}", noticed.missing.join(", "));
+            eprintln!("  NOT CAUGHT by {}", noticed.missing.join(", "));
         }
         if !noticed.unexpected.is_empty() {
             eprintln!("  NOT EXPECTED: {}", noticed.unexpected.join(", "));
@@ -106,7 +106,7 @@ fn plant_rust(plants: &[&Plant]) -> Result<Vec<Outcome>, Box<dyn Error>> {
     let tree = Tree::copy(Path::new(env!("CARGO_MANIFEST_DIR")), plants::ALL)?;
     let workshop = Workshop::of(&tree);
     let mut programs = BTreeMap::new();
-    // Tests that fail anyway would notice everything.
+    // Tests that fail without a plant would seem to catch everything.
     for binary in ["cpu", "gpu"] {
         let here = plants.iter().filter(|plant| plant.binary == binary);
         let tests: Vec<&str> = here.flat_map(|plant| plant.tests).copied().collect();

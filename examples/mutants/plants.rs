@@ -1,20 +1,20 @@
-//! What is planted, and which tests must notice.
+//! Errors planted in Rust, and the tests that must catch them.
 
-/// A wrong sign or factor, and who must notice it.
+/// A wrong sign or factor, and the tests that must catch it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plant {
     /// Source file, from the root of the project.
     pub(crate) file: &'static str,
-    /// What stands there, a whole expression or a statement; occurs exactly once.
+    /// The original code, a whole expression or a statement; occurs exactly once.
     pub(crate) from: &'static str,
-    /// What is put there instead, of the same type.
+    /// The replacement, of the same type.
     pub(crate) to: &'static str,
     /// `cpu` or `gpu`: the tests in that folder of `tests`.
     pub(crate) binary: &'static str,
     /// Tests that must fail, as `file::name`; one of them is enough. Where they are hard cases, all of them must, and no other hard case
     /// may.
     pub(crate) tests: &'static [&'static str],
-    /// What it breaks, for people.
+    /// A description of the error.
     pub(crate) what: &'static str,
 }
 
@@ -48,7 +48,7 @@ pub(crate) const ALL: &[Plant] = &[
         to: "u - v > 1.0",
         binary: "cpu",
         tests: &["reference_meshes::the_shadow_of_a_triangle_is_half_of_its_rectangle"],
-        what: "triangles of the reference reach beyond their third edge",
+        what: "triangles of the reference extend beyond their third edge",
     },
     Plant {
         file: "src/reference/patch.rs",
@@ -59,7 +59,7 @@ pub(crate) const ALL: &[Plant] = &[
             "truth::the_search_finds_all_light_on_tilted_squares",
             "truth::points_on_the_floor_agree_with_the_map_of_the_floor",
         ],
-        what: "the search for light on a point of a view looks against the rays",
+        what: "the search for light on a point of a view searches in the wrong direction along the rays",
     },
     Plant {
         file: "src/accuracy/metrics.rs",
@@ -75,7 +75,7 @@ pub(crate) const ALL: &[Plant] = &[
         to: "(target / error).powf(1.0 / falls)",
         binary: "cpu",
         tests: &["tuning::the_fewest_cells_under_the_target_are_chosen"],
-        what: "a smaller wanted error chooses fewer cells",
+        what: "a smaller target error chooses fewer cells",
     },
     Plant {
         file: "src/tuning/choose.rs",
@@ -83,7 +83,7 @@ pub(crate) const ALL: &[Plant] = &[
         to: "budget_ms / BUDGET_SHARE",
         binary: "cpu",
         tests: &["tuning::a_budget_gets_the_most_cells_it_pays_for"],
-        what: "a time budget is overspent instead of held",
+        what: "a time budget is exceeded",
     },
     Plant {
         file: "src/waves/sines.rs",
@@ -119,6 +119,6 @@ pub(crate) const ALL: &[Plant] = &[
             "hard_cases::mesh::a_rod_thinner_than_a_map_texel",
             "hard_cases::mesh::needle_triangles",
         ],
-        what: "every piece of a dispatch does the first one's work",
+        what: "every piece of a dispatch does the work of the first piece",
     },
 ];

@@ -1,19 +1,19 @@
-//! What is planted in shaders, and which hard cases must notice. Shaders are read at run time: such a plant takes no build.
+//! Errors planted in shaders, and the hard cases that must catch them. Shaders are read at run time, so these plants need no build.
 
-/// An error in a shader, and who must notice it.
+/// An error in a shader, and the cases that must catch it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShaderPlant {
     /// The family of hard cases that it is made for.
     pub(crate) family: &'static str,
     /// File below `shaders/`.
     pub(crate) file: &'static str,
-    /// What stands there; occurs exactly once.
+    /// The original code; occurs exactly once.
     pub(crate) from: &'static str,
-    /// What is put there instead.
+    /// The replacement.
     pub(crate) to: &'static str,
     /// Cases, of all families, that must fail; no other may.
     pub(crate) red: Red,
-    /// What it breaks, for people.
+    /// A description of the error.
     pub(crate) what: &'static str,
 }
 
@@ -89,7 +89,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         from: "return exp(-c_per_m * length_m);",
         to: "return max(exp(-c_per_m * length_m), 0.01);",
         red: Red::Only(&["absorption_of_1000_per_metre"]),
-        what: "a hundredth of the light is never absorbed",
+        what: "transmittance never falls below a hundredth",
     },
     ShaderPlant {
         family: "water",
@@ -195,7 +195,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
             "a_rod_thinner_than_a_map_texel",
             "detail_of_a_centimetre_a_thousand_kilometres_out",
         ]),
-        what: "sums have 32 bits where the host asks for 64",
+        what: "sums have 32 bits where the host requests 64",
     },
     ShaderPlant {
         family: "fold",
@@ -208,7 +208,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
             "footprints_of_millions_of_texels",
             "light_that_leaves_the_water_again",
         ]),
-        what: "the third edge of a wide footprint counts against its texels",
+        what: "the third edge of a wide footprint has the wrong sign",
     },
     ShaderPlant {
         family: "water",
@@ -216,7 +216,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         from: "if gap < 0.0 { return true; }",
         to: "if gap < -0.2 { return true; }",
         red: Red::Only(&["light_that_leaves_the_water_again"]),
-        what: "light that comes out of the water a little is not told of",
+        what: "light that leaves the water only slightly is not reported",
     },
     ShaderPlant {
         family: "water",
@@ -224,7 +224,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         from: "note_unfollowed(TERM_FACING_AWAY, -signed_unit_flux(",
         to: "note_unfollowed(TERM_FACING_AWAY, -0.5 * signed_unit_flux(",
         red: Red::Only(&["slopes_that_look_away"]),
-        what: "half of what looks away is told of",
+        what: "only half of the flux on slopes that face away is reported",
     },
     ShaderPlant {
         family: "water",
@@ -232,7 +232,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         from: "return max(-s / rate, 0.0);",
         to: "return -s / rate;",
         red: Red::Only(&["troughs_below_the_floor"]),
-        what: "the clamp of ways to a floor above them is missing",
+        what: "the clamp of path lengths to a floor above the start is missing",
     },
     ShaderPlant {
         family: "fold",
@@ -256,7 +256,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         from: "const START_M: f32 = -2.0 * SURFACE_TOLERANCE_M;",
         to: "const START_M: f32 = 1e-4;",
         red: Red::Only(&["a_view_of_a_floor_at_depth_0"]),
-        what: "looks through the water start a tenth of a millimetre under it",
+        what: "camera rays through the water start a tenth of a millimetre under it",
     },
     ShaderPlant {
         family: "camera",
@@ -281,7 +281,7 @@ pub(crate) const ALL: &[ShaderPlant] = &[
             "a_field_of_view_of_179_degrees",
             "one_column_of_8192_pixels",
         ]),
-        what: "radiance that leaves the water is divided by n, not by n²",
+        what: "radiance that leaves the water is divided by n instead of n²",
     },
     ShaderPlant {
         family: "camera",
@@ -289,6 +289,6 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         from: "if over_water(ray.origin) >= 0.0 {",
         to: "if over_water(ray.origin) >= -2e-5 {",
         red: Red::Only(&["a_micrometre_under_the_surface", "on_a_wave"]),
-        what: "a camera just under the water is taken to be over it",
+        what: "a camera just under the water is treated as above it",
     },
 ];

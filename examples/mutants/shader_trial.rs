@@ -1,4 +1,4 @@
-//! Rendering hard cases with planted shaders, in this process.
+//! Renders hard cases with planted shaders, in this process.
 
 use std::error::Error;
 
@@ -10,39 +10,39 @@ use caustica::render::Renderer;
 
 use super::shader_plants::ShaderPlant;
 
-/// What came of a plant.
+/// The outcome for a plant.
 pub(crate) struct Noticed {
-    /// Cases that no longer end as without it, in the suite's order.
+    /// Cases that no longer hold, in the suite's order.
     pub(crate) red: Vec<&'static Case>,
     /// Cases that had to fail and did not.
     pub(crate) missing: Vec<&'static str>,
-    /// Cases that failed and have nothing to do with it.
+    /// Cases that failed but are not listed.
     pub(crate) unexpected: Vec<&'static str>,
 }
 
 impl Noticed {
-    /// Whether it turned red what it should, and nothing else.
+    /// Whether exactly the listed cases failed.
     pub(crate) fn is_exact(&self) -> bool {
         self.missing.is_empty() && self.unexpected.is_empty()
     }
 }
 
-/// The cases that plants are held against: all but those about the device, which render nothing of their own, and those that fail
-/// anyway, which notice nothing.
+/// The cases that plants are tested with: all except those about the device, which render nothing of their own, and those that are known
+/// to fail, which cannot catch anything.
 pub(crate) fn tried() -> impl Iterator<Item = &'static Case> {
     hard_cases::all().filter(|case| case.family != Family::Machine && case.known_failure.is_none())
 }
 
-/// Runs hard cases, and remembers what does not depend on shaders.
+/// Runs hard cases, and keeps what does not depend on shaders.
 #[derive(Default)]
 pub(crate) struct Bench {
     truths: Truths,
-    /// Whether all cases were seen to hold with the shaders as they are.
+    /// Whether all cases hold with the original shaders.
     is_sound: bool,
 }
 
 impl Bench {
-    /// Runs the cases of all families with it; each must be as expected without.
+    /// Runs the cases of all families with a plant; without it each must be as expected.
     pub(crate) fn try_plant(&mut self, plant: &ShaderPlant) -> Result<Noticed, Box<dyn Error>> {
         self.see_all_sound()?;
         let sources = planted(plant)?;

@@ -1,4 +1,4 @@
-//! The page about plants and what noticed them.
+//! The page about the plants and the tests that caught them.
 
 use std::fmt::Write as _;
 
@@ -22,15 +22,17 @@ pub(crate) fn page(
         .filter(|outcome| outcome.is_caught())
         .count();
     let mut page = format!(
-        "# Planted errors\n\nEach of these was put into the project, alone, and its tests were run; `make mutants` does it again. \
+        "# Planted errors\n\nEach of these errors was planted in the project, one at a time, and the tests were run. `make \
+        mutants` repeats this. \
          {} of {} were caught.\n",
         in_shaders + in_rust,
         noticed.len() + outcomes.len()
     );
     page.push_str(
-        "\n## In shaders, against the hard cases\n\nThe hard cases of all families were run with each, but those about the device and \
-         those that are known to fail. Each plant says which cases must turn red, and no other may; what differs is in bold.\n\n\
-         | family | what | where | instead | cases that turned red |\n|---|---|---|---|---|\n",
+        "\n## In shaders, against the hard cases\n\nEach error was tested with the hard cases of all families, except those \
+        about the device and those that are known to fail. Each plant lists the cases that must fail; no other case may fail. \
+        Deviations are in bold.\n\n\
+         | family | error | place | planted | cases that failed |\n|---|---|---|---|---|\n",
     );
     for (plant, noticed) in shader_plants.iter().zip(noticed) {
         let mut by: Vec<String> = Vec::new();
@@ -61,8 +63,9 @@ pub(crate) fn page(
         );
     }
     page.push_str(
-        "\n## In Rust, against the tests\n\nThose that hard cases must notice were run against all of them: these turned red, and no other.\n\n\
-         | what | where | instead | caught by |\n|---|---|---|---|\n",
+        "\n## In Rust, against the tests\n\nErrors that hard cases must catch were tested with all hard cases: the listed ones \
+        failed, and no other.\n\n\
+         | error | place | planted | caught by |\n|---|---|---|---|\n",
     );
     for (plant, outcome) in plants.iter().zip(outcomes) {
         let by = match outcome {
@@ -78,7 +81,7 @@ pub(crate) fn page(
     page
 }
 
-/// Text as it is, in a cell of a table: on one line.
+/// Code in a cell of a table, on one line.
 fn code(text: &str) -> String {
     let words: Vec<&str> = text.split_whitespace().collect();
     format!("`{}`", words.join(" ").replace('|', "\\|"))

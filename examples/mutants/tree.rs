@@ -1,4 +1,4 @@
-//! A copy of the project with all plants in it, each asleep until an environment variable names it: one build serves them all.
+//! A copy of the project with all plants in it. Each is inactive until an environment variable names it, so one build serves all plants.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -7,7 +7,7 @@ use std::process::Command;
 
 use super::plants::Plant;
 
-/// The copy, and where it is built.
+/// The copy and its target folder.
 pub(crate) struct Tree {
     /// Root of the copy.
     pub(crate) root: PathBuf,
@@ -15,12 +15,12 @@ pub(crate) struct Tree {
     pub(crate) target: PathBuf,
 }
 
-/// Tells a test program which plant is awake: its place in the list, from 1.
+/// Environment variable that names the active plant: its index in the list, from 1.
 pub(crate) const AWAKE: &str = "CAUSTICA_PLANT";
 
-/// What plants ask, at the end of the copy's `src/lib.rs`.
+/// The function that plants call; it is added to the end of the copy's `src/lib.rs`.
 const SWITCH: &str = r#"
-/// Whether this plant is awake.
+/// Whether this plant is active.
 pub(crate) fn planted(number: usize) -> bool {
     static AWAKE: std::sync::OnceLock<Option<usize>> = std::sync::OnceLock::new();
     let read = || std::env::var("CAUSTICA_PLANT").ok()?.parse().ok();
@@ -29,8 +29,8 @@ pub(crate) fn planted(number: usize) -> bool {
 "#;
 
 impl Tree {
-    /// Copies what git knows, and what it does not ignore, as it is in `project` now, and puts the plants in. Files that are the same
-    /// already are left alone, so that a second run builds less.
+    /// Copies the files of `project` that git tracks or does not ignore, and inserts the plants. Unchanged files are not written, so that
+    /// a second run builds less.
     pub(crate) fn copy(project: &Path, plants: &[Plant]) -> io::Result<Self> {
         let own = std::env::var_os("CARGO_TARGET_DIR")
             .map_or_else(|| project.join("target"), |target| project.join(target));
@@ -39,7 +39,7 @@ impl Tree {
             |target| project.join(target),
         );
         if target == own {
-            // Cargo gives both the same file names: one would run what the other has built.
+            // Cargo uses the same file names for both, so one would run what the other has built.
             return Err(io::Error::other(
                 "CAUSTICA_MUTANTS_TARGET is the project's own target folder; it must be another",
             ));
@@ -68,7 +68,7 @@ impl Tree {
     }
 }
 
-/// A file with the plants that belong there.
+/// A file's text with its plants inserted.
 fn planted(name: &Path, content: Vec<u8>, plants: &[Plant]) -> io::Result<Vec<u8>> {
     let here = |plant: &Plant| Path::new(plant.file) == name;
     let is_root = name == Path::new("src/lib.rs");
@@ -89,7 +89,7 @@ fn planted(name: &Path, content: Vec<u8>, plants: &[Plant]) -> io::Result<Vec<u8
             "if crate::planted({}) {{ {to} }} else {{ {from} }}",
             index + 1
         );
-        // A statement is one with the `if`, a part of an expression stays one.
+        // With the `if`, a statement is still a statement and an expression an expression.
         let both = if from.ends_with(';') {
             both
         } else {
@@ -103,8 +103,8 @@ fn planted(name: &Path, content: Vec<u8>, plants: &[Plant]) -> io::Result<Vec<u8
     Ok(text.into_bytes())
 }
 
-/// Copies what the project's own builds have left of other packages: only the project itself is then built anew. Cargo looks at
-/// each and builds what does not fit.
+/// Copies the build results of other packages from the project's own builds, so that only the project itself is built again. Cargo
+/// checks each and rebuilds what does not match.
 fn lend_dependencies(own: &Path, target: &Path) -> io::Result<()> {
     for folder in [".fingerprint", "build", "deps"] {
         copy_folder(&own.join(folder), &target.join(folder))?;
@@ -112,7 +112,7 @@ fn lend_dependencies(own: &Path, target: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Copies a folder of cargo's with the times of its files, which cargo goes by; programs and the project's own files stay behind.
+/// Copies a folder of cargo's with the times of its files, which cargo compares; programs and the project's own files are not copied.
 fn copy_folder(from: &Path, to: &Path) -> io::Result<()> {
     std::fs::create_dir_all(to)?;
     for entry in std::fs::read_dir(from)? {

@@ -1,4 +1,4 @@
-//! Building the planted copy, and running the tests that must notice.
+//! Builds the planted copy, and runs the tests that must catch the plants.
 
 use std::fmt;
 use std::io;
@@ -10,27 +10,27 @@ use serde_json::Value;
 
 use super::tree::{self, Tree};
 
-/// Time after which tests are ended: a plant may make a loop endless.
+/// Time limit of tests: a plant may make a loop endless.
 const LONGEST: Duration = Duration::from_secs(20 * 60);
 
-/// The tests of hard cases, a test each.
+/// The tests of hard cases, one test per case.
 const SUITE: &str = "hard_cases::";
 
-/// What came of a plant.
+/// The outcome for a plant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// These tests failed.
     Caught(Vec<String>),
     /// All tests passed.
     Survived,
-    /// Of the hard cases others failed than those that had to: these had to and did not, and these had not to and did.
+    /// Not exactly the listed hard cases failed: the first did not fail but had to, the second failed but must not.
     Inexact(Vec<String>, Vec<String>),
-    /// The tests ended without a verdict, or not at all.
+    /// The tests ended without a result, or did not end.
     NoVerdict(String),
 }
 
 impl Outcome {
-    /// Whether a test noticed.
+    /// Whether a test caught it.
     pub(crate) fn is_caught(&self) -> bool {
         matches!(self, Self::Caught(_))
     }
@@ -67,7 +67,7 @@ impl Workshop {
         }
     }
 
-    /// The test program, or what the compiler says.
+    /// The test program, or the compiler's message.
     pub(crate) fn build(&self, binary: &str) -> io::Result<Result<PathBuf, String>> {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let output = Command::new(cargo)
@@ -80,7 +80,7 @@ impl Workshop {
                 binary,
             ])
             .arg("--message-format=json-render-diagnostics")
-            // Tests of a plant are short: the build takes longer than all of them.
+            // The tests of a plant are short, the build takes longer than all of them.
             .args(["--config", "profile.release.package.caustica.opt-level=1"])
             .args([
                 "--config",
@@ -104,7 +104,7 @@ impl Workshop {
         Ok(program.ok_or_else(|| format!("error: cargo has built no tests `{binary}`")))
     }
 
-    /// Runs tests by their full names, with one plant awake. Where they are hard cases, all of those run, and no others may fail.
+    /// Runs tests by their full names, with one plant active. If they are hard cases, all hard cases run, and no others may fail.
     pub(crate) fn run(
         &self,
         program: &Path,
@@ -149,7 +149,7 @@ impl Workshop {
     }
 }
 
-/// What the whole suite said, of which these had to fail.
+/// The outcome of the whole suite, of which these had to fail.
 fn exact(said: &str, tests: &[&str]) -> Outcome {
     let failed: Vec<&str> = said
         .lines()
@@ -167,9 +167,9 @@ fn exact(said: &str, tests: &[&str]) -> Outcome {
     }
 }
 
-/// Reads what the test program said.
+/// Reads the output of the test program.
 fn verdict(said: &str, succeeded: bool, tests: &[&str]) -> Outcome {
-    // What tests print stands between a name and its result only without capture; names are told again at the end.
+    // Without capture, the output of a test comes between its name and its result. The end of the output lists the names again.
     let failed: Vec<String> = tests
         .iter()
         .filter(|test| said.contains(&format!("test {test} ... FAILED")))

@@ -1,8 +1,8 @@
 //! Irradiance shown as a picture, by one fixed rule, so that the perceptual metrics of different settings compare.
 //!
 //! v = clamp(E / (white · [`SHOWN_WHITE`]), 0, 1) for each channel, then the sRGB curve. No exposure that depends on the image:
-//! the same irradiance always has the same colour. What lies above is cut, so an error inside a highlight that is white in
-//! both pictures is invisible here; the linear metrics see it.
+//! the same irradiance always has the same colour. Values above are clipped, so an error inside a highlight that is white in
+//! both pictures is invisible here; the linear metrics include it.
 
 use super::metrics::MetricError;
 use crate::image::tone::{code, srgb_from_linear};

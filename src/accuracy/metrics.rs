@@ -1,4 +1,4 @@
-//! Error of an image against a truth, over all channels of all texels alike.
+//! Error of an image against a truth, over all channels of all texels.
 //!
 //! Images are flat slices of the same length, f32 or f64 (`as_flattened()` of RGB triples). A value that is not finite is an
 //! error, never a figure: a NaN must not look like a good image.
@@ -27,12 +27,12 @@ pub enum MetricError {
         /// What.
         value: f64,
     },
-    /// Nothing to be relative to.
+    /// The truth is 0 everywhere.
     #[error(
         "the truth is zero everywhere, so a relative error has no meaning; some light must reach what is compared"
     )]
     BlackTruth,
-    /// A percentile that is none.
+    /// An invalid percentile.
     #[error("the percentile is {0}; it must be in 0 … 100")]
     Percentile(f64),
     /// The pixels do not fill the picture.
@@ -57,10 +57,10 @@ pub enum MetricError {
         /// Rows.
         height: u32,
     },
-    /// The mask leaves nothing.
+    /// The mask marks no pixel.
     #[error("no pixel is compared; the mask must hold at least one")]
     NothingCompared,
-    /// No white to show irradiance by.
+    /// The irradiance of white is invalid.
     #[error("the irradiance of white is {0} W/m²; it must be finite and above 0")]
     White(f64),
 }

@@ -1,5 +1,5 @@
-//! How far an image is from the truth: `metrics` (numbers against numbers), `flip` and `luv` (pictures against pictures, made by
-//! `display`), and `estimate`, a frame's estimate of its own error.
+//! How far an image is from the truth. `metrics` compares numbers; `flip` and `luv` compare pictures, which `display` makes;
+//! `estimate` is a frame's estimate of its own error.
 
 pub mod display;
 pub mod estimate;

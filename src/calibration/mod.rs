@@ -1,13 +1,13 @@
-//! The figures behind predictions: what passes cost on one machine, and how far a frame's estimate of its error may be off.
+//! The measurements behind predictions: what passes cost on one machine, and how far a frame's estimate of its error may be off.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-/// Version of the file's form.
+/// Version of the file's format.
 const FORM: u32 = 1;
-/// What comes with the program.
+/// The calibration that comes with the program.
 const BUILT_IN: &str = include_str!("calibration.json");
 
 /// Why a calibration cannot be used.
@@ -21,7 +21,7 @@ pub enum CalibrationError {
         /// Why.
         error: std::io::Error,
     },
-    /// The file is no calibration.
+    /// The file is not a calibration.
     #[error(
         "{file} is no calibration: {reason}; accepted: what `caustica calibrate` of this version writes"
     )]
@@ -37,25 +37,25 @@ pub enum CalibrationError {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PassRate {
-    /// Each run, whatever it does, ms.
+    /// Cost of each run, whatever its work, ms.
     pub start_ms: f64,
-    /// Each unit of the pass's work (`work` in its description), ns.
+    /// Cost of each unit of the pass's work (`work` in its description), ns.
     pub unit_ns: f64,
 }
 
-/// What was measured.
+/// Measurements of one machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
-    /// Version of the form: 1.
+    /// Version of the format: 1.
     pub form: u32,
-    /// Adapter that was measured, with its driver.
+    /// The measured adapter, with its driver.
     pub adapter: String,
     /// What a frame costs besides its passes, ms.
     pub frame_ms: f64,
     /// Cost of each pass.
     pub passes: BTreeMap<String, PassRate>,
-    /// How much larger than a frame's estimate its true error may be, 1 …: the largest seen against the float64 reference.
+    /// Factor by which a frame's true error may exceed its estimate, 1 …: the largest one measured against the float64 reference.
     pub error_margin: f64,
 }
 
@@ -80,10 +80,10 @@ impl Calibration {
         Self::read(&text, &file)
     }
 
-    /// Reads a calibration's text; `file` is what errors call it.
+    /// Reads a calibration's text; errors call it `file`.
     ///
     /// # Errors
-    /// [`CalibrationError::Form`] for anything but finite figures in their ranges.
+    /// [`CalibrationError::Form`] unless all figures are finite and in range.
     pub fn read(text: &str, file: &str) -> Result<Self, CalibrationError> {
         let wrong = |reason: String| CalibrationError::Form {
             file: file.to_owned(),
@@ -109,7 +109,7 @@ impl Calibration {
             return Err(wrong(format!("{figure} is no time")));
         }
         drop(figures);
-        // Files from before a pass was there: a guess is nearer than nothing.
+        // Older files lack passes that were added since: the built-in figure is better than none.
         let built_in: Self =
             serde_json::from_str(BUILT_IN).map_err(|error| wrong(error.to_string()))?;
         for (pass, rate) in built_in.passes {
@@ -118,7 +118,7 @@ impl Calibration {
         Ok(read)
     }
 
-    /// A calibration of measured figures.
+    /// A calibration from measured figures.
     pub fn new(
         adapter: String,
         frame_ms: f64,

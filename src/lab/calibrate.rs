@@ -1,4 +1,4 @@
-//! Measuring a calibration: some small scenes are rendered, timed, and compared with the float64 reference.
+//! Measures a calibration: renders and times some small scenes, and compares them with the float64 reference.
 
 use std::collections::BTreeMap;
 
@@ -20,13 +20,13 @@ use crate::tuning::cost::fit_rate;
 
 /// Timed runs of each scene, after one that warms up.
 const RUNS: usize = 5;
-/// Relative L1 error of the truth that estimates are held against.
+/// Relative L1 error of the truth that estimates are compared with.
 const TRUTH_ERROR: f64 = 2e-3;
-/// Cells at which estimates are held against the truth.
+/// Numbers of cells at which estimates are compared with the truth.
 const JUDGED_CELLS: [u32; 3] = [64, 128, 256];
-/// Errors above this are not judged: so few cells know little of the scene, and nobody asks for them.
+/// Errors above this are ignored: such few cells do not resolve the scene, and are not requested in practice.
 const JUDGED_BELOW: f64 = 0.1;
-/// Added to the largest ratio seen: other scenes differ.
+/// Added to the largest measured ratio, because other scenes differ.
 const CAUTION: f64 = 1.1;
 
 const SINE_POOL: &str = include_str!("../../scenes/sine_pool.json");
@@ -53,11 +53,11 @@ pub enum MeasureError<E: std::error::Error> {
     #[error("a map cannot be compared: {0}")]
     Metric(#[from] MetricError),
     /// The adapter does not time passes.
-    #[error("this adapter gives no times for its passes: there is nothing to calibrate")]
+    #[error("this adapter does not report the times of passes, so it cannot be calibrated")]
     Untimed,
 }
 
-/// Measures; `render` renders a frame, `progress` hears what is done next and which part is done.
+/// Measures; `render` renders a frame, `progress` gets the next step and the finished part.
 ///
 /// # Errors
 /// [`MeasureError`].
@@ -74,7 +74,7 @@ pub fn calibration<E: std::error::Error>(
         let scene = resolved(value.clone())?;
         let facts = methods::facts(&scene)?;
         let mut runs: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-        // Warm frames find their level maps: those passes are timed when they run.
+        // Warm frames do not build level maps, so those passes are timed in the frames that do.
         let first = render(&scene).map_err(MeasureError::Render)?.stats;
         for pass in first
             .passes
@@ -114,14 +114,14 @@ pub fn calibration<E: std::error::Error>(
     Ok(Calibration::new(adapter, median(besides), passes, margin))
 }
 
-/// How much larger than its estimate a frame's true error is, at most.
+/// The largest factor by which a frame's true error exceeds its estimate.
 fn margin<E: std::error::Error>(
     render: &mut dyn FnMut(&ResolvedScene) -> Result<Frame, E>,
     progress: &dyn Fn(&str, f64),
 ) -> Result<f64, MeasureError<E>> {
     let mut largest: f64 = 1.0;
     for (index, text) in [SINE_POOL, STEEP_POOL].into_iter().enumerate() {
-        progress("judging estimates", 0.5 + 0.25 * index as f64);
+        progress("comparing estimates", 0.5 + 0.25 * index as f64);
         let value = scene_value(text);
         let settings = ReferenceSettings {
             target_error: Some(TRUTH_ERROR),
@@ -160,7 +160,7 @@ fn timed_scenes() -> Vec<Value> {
         value["output"]["height"] = json!(texels);
         all.push(value);
     }
-    // So steep that light comes out of the water again.
+    // So steep that light leaves the water again.
     for cells in [64, 256] {
         let mut value = scene_value(SINE_POOL);
         value["quality"] = json!({ "water_cells": cells });

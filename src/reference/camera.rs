@@ -27,16 +27,16 @@ pub(super) struct ViewPoint {
     pub(super) side_m: f64,
 }
 
-/// By which way a pixel sees its point.
+/// How the camera ray of a pixel reaches its point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
-    /// Straight.
+enum Route {
+    /// Without crossing the surface.
     Direct,
     /// From the air down into the water.
     Refracted,
     /// From the water up into the air.
     Left,
-    /// Mirrored at the water from below.
+    /// Reflected at the surface from below.
     Mirrored,
 }
 
@@ -47,16 +47,16 @@ struct Ray {
     direction: DVec3,
 }
 
-/// The picture that a camera makes: which ray goes through which place of it.
+/// The geometry of a camera: which ray belongs to which place in the picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Picture {
-    /// World position that is looked at, m.
+    /// World position of the camera's target, m.
     target_m: DVec3,
-    /// World position of the eye, of parallel rays the middle of the image plane, m.
+    /// World position of the eye (for parallel rays, of the middle of the image plane), m.
     eye_m: DVec3,
     /// Unit viewing direction.
     forward: DVec3,
-    /// From the middle to the right edge of the picture, at unit distance, of parallel rays m.
+    /// From the middle to the right edge of the picture, at unit distance (for parallel rays, m).
     right: DVec3,
     /// From the middle to the upper edge.
     up: DVec3,
@@ -67,7 +67,7 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// The one that `resolved` asks for.
+    /// The camera of `resolved`.
     pub(super) fn of(resolved: &ResolvedScene) -> Result<Self, ReferenceError> {
         let (Output::View(output), Some(camera)) = (&resolved.scene.output, &resolved.scene.camera)
         else {
@@ -93,7 +93,7 @@ impl Picture {
         })
     }
 
-    /// World (x, z) of what is looked at, m.
+    /// World (x, z) of the camera's target, m.
     pub(super) fn middle_m(&self) -> DVec2 {
         DVec2::new(self.target_m.x, self.target_m.z)
     }
@@ -106,7 +106,7 @@ pub(super) struct Viewer<'a> {
     picture: &'a Picture,
     /// The eye in local coordinates, m.
     eye_m: DVec3,
-    /// Whether the ray of a pixel starts above the water is asked per ray: an image plane may dip into the waves.
+    /// Whether a ray starts above the water is decided per ray, because an image plane may dip into the waves.
     stack: Vec<usize>,
 }
 
@@ -120,8 +120,8 @@ impl<'a> Viewer<'a> {
         }
     }
 
-    /// What the middle of a pixel shows, numbered from the upper left; `None`: no surface.
-    pub(super) fn look(&mut self, pixel: [u32; 2]) -> Option<ViewPoint> {
+    /// What the middle of a pixel shows; pixels are numbered from the upper left. `None`: no surface.
+    pub(super) fn point(&mut self, pixel: [u32; 2]) -> Option<ViewPoint> {
         let at = DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
         let ray = self.pixel_ray(at);
         let above = self.place.over_water_m(ray.from_m) >= 0.0;
@@ -130,22 +130,22 @@ impl<'a> Viewer<'a> {
             .meet_water(ray.from_m, ray.direction, if above { 1.0 } else { -1.0 })
             .unwrap_or(f64::MAX);
         if let Some(point) = self.first_surface(ray, until_m, true) {
-            return Some(self.finish(point, at, Way::Direct));
+            return Some(self.finish(point, at, Route::Direct));
         }
         if until_m == f64::MAX {
             return None;
         }
-        let ways: &[Way] = if above {
-            &[Way::Refracted]
+        let routes: &[Route] = if above {
+            &[Route::Refracted]
         } else {
-            // What stands in the air hides the mirror image of what stands in the water.
-            &[Way::Left, Way::Mirrored]
+            // An object in the air has precedence over the mirror image of one in the water.
+            &[Route::Left, Route::Mirrored]
         };
-        for &way in ways {
-            if let Some(ray) = self.last_leg(at, way)
-                && let Some(point) = self.first_surface(ray, f64::MAX, way != Way::Left)
+        for &route in routes {
+            if let Some(ray) = self.last_leg(at, route)
+                && let Some(point) = self.first_surface(ray, f64::MAX, route != Route::Left)
             {
-                return Some(self.finish(point, at, way));
+                return Some(self.finish(point, at, route));
             }
         }
         None
@@ -170,22 +170,22 @@ impl<'a> Viewer<'a> {
         }
     }
 
-    /// The last straight piece of the way through `at`.
-    fn last_leg(&self, at: DVec2, way: Way) -> Option<Ray> {
+    /// The last leg of the camera ray through `at`.
+    fn last_leg(&self, at: DVec2, route: Route) -> Option<Ray> {
         let ray = self.pixel_ray(at);
-        if way == Way::Direct {
+        if route == Route::Direct {
             return Some(ray);
         }
-        let side = if way == Way::Refracted { 1.0 } else { -1.0 };
+        let side = if route == Route::Refracted { 1.0 } else { -1.0 };
         let t = self.place.meet_water(ray.from_m, ray.direction, side)?;
         let from_m = ray.from_m + ray.direction * t;
         let slope = self.place.surface.at(from_m.x, from_m.z).slope;
         let normal = normal_from_slope(slope.x, slope.y) * side;
         let ior = self.place.ior;
-        let direction = match way {
-            Way::Refracted => refract_direction(ray.direction, normal, ior)?,
-            Way::Left => refract_direction(ray.direction, normal, 1.0 / ior)?,
-            Way::Mirrored | Way::Direct => reflect_direction(ray.direction, normal),
+        let direction = match route {
+            Route::Refracted => refract_direction(ray.direction, normal, ior)?,
+            Route::Left => refract_direction(ray.direction, normal, 1.0 / ior)?,
+            Route::Mirrored | Route::Direct => reflect_direction(ray.direction, normal),
         };
         Some(Ray { from_m, direction })
     }
@@ -227,22 +227,22 @@ impl<'a> Viewer<'a> {
         &self,
         (position_m, normal, object): (DVec3, DVec3, Option<usize>),
         at: DVec2,
-        way: Way,
+        route: Route,
     ) -> ViewPoint {
         ViewPoint {
             position_m,
             normal,
             object,
             dry: self.place.over_water_m(position_m) > DRY_M,
-            side_m: self.side_m(position_m, normal, at, way),
+            side_m: self.side_m(position_m, normal, at, route),
         }
     }
 
     /// The geometric mean of the distances between `p_m` and where the rays of the next pixels along x and y meet its plane.
-    fn side_m(&self, p_m: DVec3, normal: DVec3, at: DVec2, way: Way) -> f64 {
+    fn side_m(&self, p_m: DVec3, normal: DVec3, at: DVec2, route: Route) -> f64 {
         let to_next = |step: DVec2| {
             [step, -step].into_iter().find_map(|step| {
-                let Ray { from_m, direction } = self.last_leg(at + step, way)?;
+                let Ray { from_m, direction } = self.last_leg(at + step, route)?;
                 let t = (p_m - from_m).dot(normal) / direction.dot(normal);
                 let distance_m = (from_m + direction * t).distance(p_m);
                 (t > 0.0 && distance_m.is_finite()).then_some(distance_m)

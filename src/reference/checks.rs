@@ -1,10 +1,10 @@
-//! Figures that can be counted with, and the suns and point lights that count.
+//! Checks the scene's values, and lists the suns and point lights that the reference traces.
 
 use super::ReferenceError;
 use crate::scene::{Light, Output, PointLight, Scene, Sun, Water};
 use crate::waves::Surface;
 
-/// The extinction of a water that can be counted in, 1/m.
+/// The water's extinction, 1/m, after checking its values.
 pub(super) fn check_water(water: &Water) -> Result<[f64; 3], ReferenceError> {
     let mut extinction_per_m = [0.0; 3];
     for (c, extinction) in extinction_per_m.iter_mut().enumerate() {
@@ -15,7 +15,7 @@ pub(super) fn check_water(water: &Water) -> Result<[f64; 3], ReferenceError> {
     Ok(extinction_per_m)
 }
 
-/// Refuses waves that are no numbers.
+/// Refuses waves whose values are not finite.
 pub(super) fn check_surface(surface: &Surface) -> Result<(), ReferenceError> {
     let height_m = surface.max_height_m();
     check("the waves' height, m", height_m, f64::MIN, f64::MAX)?;
@@ -33,7 +33,7 @@ fn check(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), Refe
     })
 }
 
-/// The lights that the output counts.
+/// The lights that contribute to the output.
 fn counted(scene: &Scene) -> Result<impl Iterator<Item = &Light>, ReferenceError> {
     let only = match &scene.output {
         Output::IrradianceMap(output) => output.light,
@@ -73,7 +73,7 @@ pub(super) fn point_lights(scene: &Scene) -> Result<Vec<&PointLight>, ReferenceE
     Ok(points)
 }
 
-/// The suns that shine into the water of `scene`.
+/// The suns of `scene` whose light enters the water.
 pub(super) fn suns(scene: &Scene) -> Result<Vec<&Sun>, ReferenceError> {
     let mut suns = Vec::new();
     for light in counted(scene)? {

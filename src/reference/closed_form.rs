@@ -1,4 +1,4 @@
-//! Scenes with a formula instead of rays: flat water, and a single sine under a sun in the zenith.
+//! Exact formulas for simple scenes: flat water, and a single sine under a sun in the zenith.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use crate::physics::fresnel::fresnel_transmittance;
 use crate::scene::{Sun, Water};
 
 /// Irradiance per channel, W/m², on a floor `depth_m` (0 …) under flat water: E cos θ_i T(θ_i) e^(−c d), with d along the
-/// refracted ray. 0 for a sun at or below the horizon. The waves of `water` are not looked at.
+/// refracted ray. 0 for a sun at or below the horizon. The waves of `water` are ignored.
 pub fn flat_water_irradiance(water: &Water, depth_m: f64, sun: &Sun) -> [f64; 3] {
     let cos_i = sun.elevation_deg.to_radians().sin();
     if cos_i <= 0.0 {
@@ -66,7 +66,7 @@ impl SineUnderZenith {
         1.0 + slope * deflection.tan() + (self.depth_m + height_m) * secant2 * per_slope * curvature
     }
 
-    /// Flux per dx of the ray that enters at `x_m`, once it is down: T e^(−c d), W/m².
+    /// Flux per dx of the ray that enters at `x_m`, at the floor: T e^(−c d), W/m².
     pub fn flux_density(&self, x_m: f64) -> f64 {
         let (height_m, slope, _) = self.surface(x_m);
         let cos_i = 1.0 / slope.hypot(1.0);
@@ -220,7 +220,7 @@ struct Branch {
 }
 
 impl Branch {
-    /// What it lights, low and high end, m.
+    /// Low and high end of the interval that it lights, m.
     fn floor_m(&self, sine: &SineUnderZenith) -> (f64, f64) {
         let (a, b) = (sine.landing_m(self.from_m), sine.landing_m(self.to_m));
         (a.min(b), a.max(b))
@@ -246,7 +246,7 @@ fn bisect(mut a: f64, mut b: f64, before: impl Fn(f64) -> bool) -> f64 {
 /// A point light of 1 W/sr over flat water, or under it; everything depends on the distance from the point below it only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LampOverFlatWater {
-    /// Light above the water, m; below 0 it is under it.
+    /// Height of the light above the water, m; negative under water.
     pub height_m: f64,
     /// Floor below the water, m, above 0 and deeper than the light.
     pub depth_m: f64,

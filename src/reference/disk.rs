@@ -1,8 +1,8 @@
-//! Truths kept from one run to the next, one file each.
+//! Keeps truths on disk between runs, one file each.
 //!
 //! A file is `MAGIC`, the length of a JSON text as u32, that text (everything but the values), the values as f64 and flags as
-//! bytes, all little-endian, and a blake3 hash of what comes before. It is named by a hash of what the truth depends on. A file
-//! that is damaged, cut short or of another program is as good as none.
+//! bytes, all little-endian, and a blake3 hash of what comes before. Its name is a hash of what the truth depends on. A file
+//! that is damaged, truncated or of another program version is ignored.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use crate::scene::{ImageFormat, Output, Quality, Receiver, ResolvedScene, ToneCu
 
 /// First bytes of a file; the digit is the format's number.
 const MAGIC: &[u8; 16] = b"caustica truth 1";
-/// Changes when the reference answers differently to the same question.
+/// Must change when the reference gives another result for the same scene.
 const ENGINE: u32 = 2;
 /// Bytes of the hash at the end.
 const HASH_BYTES: usize = 32;
@@ -25,7 +25,7 @@ const EXTENSION: &str = "truth";
 /// Most bytes that a folder of truths holds.
 const FOLDER_BYTES: u64 = 1 << 30;
 
-/// All of a [`Truth`] but its values.
+/// A [`Truth`] without its values.
 #[derive(Serialize, Deserialize)]
 struct Head {
     key: String,
@@ -38,7 +38,7 @@ struct Head {
     rays: u64,
     seconds: f64,
     has_shadow: bool,
-    /// Rays it stopped at; 0 when it stopped because it was good enough.
+    /// The limit of rays at which the search ended; 0 when it ended because the target was met.
     limit_rays: u64,
 }
 
@@ -46,12 +46,12 @@ struct Head {
 pub(super) struct Shelf {
     folder: PathBuf,
     key: String,
-    /// Target and limit of whoever asks.
+    /// Target and limit of the caller.
     limits: (Option<f64>, u64),
 }
 
 impl Shelf {
-    /// For what `settings` ask about `resolved`.
+    /// For `resolved` with `settings`.
     pub(super) fn of(resolved: &ResolvedScene, settings: &TruthSettings, folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -64,17 +64,17 @@ impl Shelf {
         self.folder.join(format!("{}.{EXTENSION}", self.key))
     }
 
-    /// The truth that lies there, if it is whole and as good as `settings` ask.
+    /// The stored truth, if it is complete and as accurate as `settings` require.
     pub(super) fn read(&self, settings: &TruthSettings) -> Option<Truth> {
         let (head, truth) = decode(&std::fs::read(self.file()).ok()?, &self.key)?;
         let reached = settings
             .target_error
             .is_some_and(|target| truth.relative_error <= target);
-        // A truth that stopped at its limit of rays serves whoever allows no more.
+        // A truth that ended at its limit of rays is enough for callers that allow no more rays.
         (reached || head.limit_rays >= settings.max_rays).then_some(truth)
     }
 
-    /// Writes a whole file or none.
+    /// Writes the file atomically.
     pub(super) fn write(&self, truth: &Truth) -> std::io::Result<()> {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         std::fs::create_dir_all(&self.folder)?;
@@ -87,14 +87,14 @@ impl Shelf {
             .and_then(|mut file| file.write_all(&bytes).and_then(|()| file.sync_all()))
             .and_then(|()| std::fs::rename(&temporary, self.file()));
         if written.is_err() {
-            // The first error is the one to tell; a left-over part is never read.
+            // The first error is the one to report; a partial file is never read.
             std::fs::remove_file(&temporary).ok();
         }
         written?;
         self.make_room()
     }
 
-    /// Removes the oldest truths until the rest keeps to [`FOLDER_BYTES`]; the one just written stays.
+    /// Removes the oldest truths until the folder is within [`FOLDER_BYTES`]; the one just written stays.
     fn make_room(&self) -> std::io::Result<()> {
         let own = self.file();
         let mut kept: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
@@ -155,7 +155,8 @@ impl Shelf {
     }
 }
 
-/// A hash of all that the answer depends on: the scene without dials and dressing, how many points, and the program.
+/// A hash of everything that the result depends on: the scene without dials and without what affects the picture only, the number of
+/// points, and the program.
 fn key(resolved: &ResolvedScene, settings: &TruthSettings) -> String {
     let mut scene = resolved.scene.clone();
     let level_map_texels = scene.quality.level_map_texels;
@@ -185,7 +186,7 @@ fn key(resolved: &ResolvedScene, settings: &TruthSettings) -> String {
         meshes: resolved.meshes.clone(),
     };
     let mut hasher = blake3::Hasher::new();
-    // Lengths first, so that no two questions run into the same bytes.
+    // Lengths come first, so that two different inputs never give the same bytes.
     for part in [scene.hash().as_str(), env!("CARGO_PKG_VERSION")] {
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
@@ -195,7 +196,7 @@ fn key(resolved: &ResolvedScene, settings: &TruthSettings) -> String {
     hasher.finalize().to_hex().to_string()
 }
 
-/// What `bytes` hold, if they are whole and answer `key`.
+/// The contents of `bytes`, if they are complete and belong to `key`.
 fn decode(bytes: &[u8], key: &str) -> Option<(Head, Truth)> {
     let (body, hash) = bytes.split_at_checked(bytes.len().checked_sub(HASH_BYTES)?)?;
     if blake3::hash(body).as_bytes() != hash {

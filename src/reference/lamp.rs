@@ -1,8 +1,8 @@
-//! One point light, one lattice, all rays: each has a direction and a weight of its own.
+//! Traces all rays of one point light and one lattice. Each ray has its own direction and weight.
 //!
-//! Above the water the lattice lies on the water and a ray stands for I cos θ dA / r² of the light; under it the lattice lies on the
-//! floor's plane, so that every ray is on its way to the map and only meshes can stop it. Either way it lies in rings around the
-//! foot of the light, where that is brightest: an even lattice would step over all the light of one that almost touches the plane.
+//! For a light above the water the lattice lies on the water, and a ray represents I cos θ dA / r² of the light. For a light under water the
+//! lattice lies on the floor's plane, so that every ray goes to the map and only meshes can block it. In both cases the lattice is in rings
+//! around the foot of the light, where it is brightest: an even lattice would miss all the light of a lamp that almost touches the plane.
 
 use glam::{DVec2, DVec3};
 
@@ -33,7 +33,7 @@ impl<'a> Lamp<'a> {
         }
     }
 
-    /// What the lattice covers: the water whose light can reach `targets`, the first of which is the map; for a light under water
+    /// What the lattice covers: the water from which light can reach `targets`, the first of which is the map; for a light under water
     /// the map itself.
     pub(super) fn window(&self, targets: &[Target]) -> LightWindow {
         if self.submerged {
@@ -63,7 +63,7 @@ impl<'a> Lamp<'a> {
             let mut stack = Vec::new();
             for i in 0..row.count {
                 let (place_m, m2) = rings.place(row.start_m + lattice.step_m() * i as f64);
-                // The rings reach beyond the corners of the window.
+                // The rings extend beyond the corners of the window.
                 if !window.contains(place_m) {
                     continue;
                 }
@@ -97,7 +97,7 @@ impl<'a> Lamp<'a> {
         Some((rings, rings.around_window(window)))
     }
 
-    /// A ray straight to a place of the floor that stands for `m2` of it.
+    /// A straight ray to a place on the floor that represents `m2` of it.
     fn shine<const K: usize>(
         &self,
         ground: &Ground<'_, K>,
@@ -116,7 +116,7 @@ impl<'a> Lamp<'a> {
         ground.land(flux, self.position_m, to_m, path_m, stack, tally);
     }
 
-    /// A ray through a place of the water that stands for `m2` of it.
+    /// A ray through a place on the water that represents `m2` of it.
     fn refract<const K: usize>(
         &self,
         ground: &Ground<'_, K>,

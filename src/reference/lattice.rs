@@ -1,9 +1,9 @@
-//! Where the rays start: a square lattice, turned so that no texel edge runs along its rows.
+//! Where the rays start: a square lattice, rotated so that no texel edge runs along its rows.
 //!
 //! The lattice of the Gaussian integer p + iq holds the points (a p − b q, a q + b p)/M, M = p² + q², of integer a and b. It
 //! repeats with every cell and has exactly M points in each, so flat water gives every texel the same count, to the ray. With
 //! q/p near the golden section and small partial quotients, lines along the texel edges meet the points evenly; wavy edges
-//! are met no worse. (Known from numerical integration as the Fibonacci lattice when p and q are Fibonacci numbers: Niederreiter,
+//! are sampled no worse. (Known from numerical integration as the Fibonacci lattice when p and q are Fibonacci numbers: Niederreiter,
 //! Random Number Generation and Quasi-Monte Carlo Methods, 1992, §5.)
 
 use glam::DVec2;
@@ -12,7 +12,7 @@ use super::window::LightWindow;
 
 /// Points of the second half's lattice per point of the first's, at most. Two shifts of one lattice could be alike by chance
 /// where the water varies along one direction only, and the error would look smaller than it is; lattices of different sizes,
-/// turned opposite ways, cannot.
+/// turned in opposite directions, cannot.
 pub(super) const SECOND_HALF: f64 = 0.96;
 
 /// A lattice with `p² + q²` points per cell.
@@ -36,7 +36,7 @@ pub(super) struct Row {
 }
 
 impl Lattice {
-    /// At most `points_per_texel` points per texel, above 0; turned one way, or the other when `mirrored`.
+    /// At most `points_per_texel` points per texel, above 0; turned in one direction, or in the other if `mirrored`.
     pub(super) fn new(points_per_texel: f64, texel_m: DVec2, shift: DVec2, mirrored: bool) -> Self {
         let mut cell_m = texel_m;
         let mut points_per_cell = points_per_texel;

@@ -1,4 +1,4 @@
-//! A sun or point light in its place, and a ray of it through a place of the water.
+//! A sun or point light in local coordinates, and its ray through a place on the water.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -13,11 +13,11 @@ use crate::physics::refraction::{
 use crate::scene::{PointLight, Sun};
 use crate::waves::{Surface, SurfacePoint};
 
-/// Least area that a square shows to the light as a share of what it covers, for the number of rays: light that only grazes it under
-/// flat water may still strike it under waves.
+/// Least projected area of a square towards the light as a share of its area, for the number of rays: light that only grazes it under
+/// flat water may still hit it under waves.
 const LEAST_AREA: f64 = 0.25;
 
-/// Least height and depth that a point light's way through flat water is found for, m.
+/// Least height and depth for which a point light's path through flat water is computed, m.
 const TINY_M: f64 = 1e-6;
 
 /// Where light comes from, local coordinates.
@@ -58,7 +58,7 @@ impl Source {
         }
     }
 
-    /// Whether it is a point light over the water.
+    /// Whether it is a point light above the water.
     pub(super) fn is_lamp_in_air(&self) -> bool {
         matches!(
             self,
@@ -69,7 +69,7 @@ impl Source {
         )
     }
 
-    /// Unit direction under flat water of the ray that meets `target_m`; `None` where none goes into the water.
+    /// Unit direction under flat water of the ray that reaches `target_m`; `None` where no ray enters the water.
     pub(super) fn flat_direction(&self, target_m: DVec3, ior: f64) -> Option<DVec3> {
         match *self {
             Self::Sun { to_light } => refract_direction(-to_light, DVec3::Y, ior),
@@ -93,13 +93,13 @@ impl Source {
     }
 }
 
-/// A light that the output counts.
+/// A light that contributes to the output.
 pub(super) struct PlacedLight {
     /// Where its light comes from.
     pub(super) source: Source,
     /// W/m² on a plane facing the sun, or W/sr of the point light.
     pub(super) power: [f64; 3],
-    /// How far waves turn the rays of a point light above the water aside.
+    /// How far waves deflect the rays of a point light above the water.
     pub(super) drift: Option<LampDrift>,
 }
 
@@ -169,7 +169,7 @@ impl PlacedLight {
     }
 
     /// Rings on the water around the foot of a point light above it, in units of what lights a square of `square_m2` around `p_m`
-    /// with unit `normal` under flat water: of every unit the square then gets the rays.
+    /// with unit `normal` under flat water: the square then gets the rays of every unit.
     ///
     /// A ray that enters at ρ lands at r(ρ) = ρ + D ρ/g, g² = (n² − 1)ρ² + n²h², so that water of (ρ/r)(dρ/dr) lights a level
     /// unit of area.

@@ -1,4 +1,4 @@
-//! Rounds of ever finer lattices until the map is good enough.
+//! Computes a map in rounds of finer and finer lattices until its error is small enough.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -17,33 +17,33 @@ use super::{ReferenceError, ReferenceSettings};
 use crate::scene::{ResolvedScene, Scene};
 use crate::waves::Surface;
 
-/// How the error falls with the number of rays N, as N to this power; measured 0.72 … 0.75 on waves that fold.
+/// The error falls with the number of rays N as N to minus this power; measured 0.72 … 0.75 where light folds.
 pub(super) const ORDER: f64 = 0.73;
-/// Most that a round is larger than the one before.
+/// Largest ratio of the rays of a round to those of the round before.
 pub(super) const MOST_GROWTH: f64 = 16.0;
 
-/// Part of the rays in the first half.
+/// Share of the rays in the first half.
 const FIRST_HALF: f64 = 0.515;
 /// Where the light went, W per channel, all suns together. Each term is summed where it happens, none by subtraction.
 ///
 /// emitted = reflected + absorbed + scattered + landed (floor and objects) + left_region + missed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnergyTerms {
-    /// Falls on the window of water.
+    /// Arrives at the window of water.
     pub emitted_w: [f64; 3],
     /// Reflected at the surface.
     pub reflected_w: [f64; 3],
-    /// Absorbed on the way to a receiver or to the floor's plane.
+    /// Absorbed on the path to a receiver or to the floor's plane.
     pub absorbed_w: [f64; 3],
-    /// Scattered on that way.
+    /// Scattered on that path.
     pub scattered_w: [f64; 3],
     /// Arrives in the floor's plane outside the map or the floor.
     pub left_region_w: [f64; 3],
-    /// Refracted upwards, or under the floor from the start.
+    /// Refracted upwards, or starts under the floor.
     pub missed_w: [f64; 3],
 }
 
-/// The truth about a map.
+/// The truth for a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceMap {
     /// Texels along x.
@@ -59,18 +59,18 @@ pub struct ReferenceMap {
     /// Arrived on each receiver, W: the map on the floor first, then the objects in order. Of the light through the windows
     /// below, which hold all that can reach the map or an object.
     pub landed_w: Vec<[f64; 3]>,
-    /// Where the rest went.
+    /// Where the rest of the light went.
     pub energy: EnergyTerms,
-    /// The water that was looked at, per light, first the suns, then the point lights, world coordinates (of a point light under water
-    /// the piece of floor).
+    /// The window of each light, first the suns, then the point lights, in world coordinates (for a point light under water, the
+    /// rectangle of floor).
     pub windows: Vec<LightWindow>,
 }
 
 /// Counts the light on the floor of `resolved.scene`, whose output must be an irradiance map of it.
 ///
 /// All suns above the horizon and all point lights count, or the one in `output.light`. Each texel holds Σ E·dA·(n·l)/n_y·T·e^(−(a+b)d) of the rays
-/// that land in it, over its area; n·l below 0 counts as 0. The bits do not depend on the number of threads. `progress` hears
-/// the finished part, 0 … 1, from any thread, as far as it can be foreseen; it falls back when a round needs another after all.
+/// that land in it, over its area; n·l below 0 counts as 0. The bits do not depend on the number of threads. `progress` is called with
+/// the finished part, 0 … 1, from any thread, as far as it can be predicted; it goes back when another round is needed.
 pub fn irradiance_map(
     resolved: &ResolvedScene,
     settings: &ReferenceSettings,
@@ -79,14 +79,14 @@ pub fn irradiance_map(
     count(resolved, settings, progress, &|| false).map(|counted| counted.map)
 }
 
-/// A map, and how much of its light meshes stop.
+/// A map, and the share of its light that meshes block.
 pub(super) struct CountedMap {
     pub(super) map: ReferenceMap,
     /// Share per texel, 0 … 1; `None` without meshes.
     pub(super) shadow: Option<Vec<f64>>,
 }
 
-/// As [`irradiance_map`], until `cancelled` says that nobody waits for it.
+/// Like [`irradiance_map`], until `cancelled` returns true.
 pub(super) fn count(
     resolved: &ResolvedScene,
     settings: &ReferenceSettings,
@@ -218,7 +218,7 @@ impl<'a, const K: usize> Counter<'a, K> {
             let planned = counted.load(Ordering::Relaxed) as f64 + rays;
             let round = self.round(rays, cancelled, &|more| {
                 let done = counted.fetch_add(more, Ordering::Relaxed) + more;
-                // Before the first error is known nobody can tell how much there is to do.
+                // Until the first error is known, the amount of work cannot be predicted.
                 if !first || rays >= most {
                     progress((done as f64 / planned).min(1.0));
                 }
@@ -318,30 +318,30 @@ impl<'a, const K: usize> Counter<'a, K> {
         }
     }
 
-    /// Light that meshes stop over all that would be there, per texel, all suns and channels together.
+    /// Share of the light that meshes block, per texel, over all suns and channels.
     fn shadow(&self, round: &Round<K>) -> Option<Vec<f64>> {
         if self.occluders.is_empty() {
             return None;
         }
-        let mut stopped_landed = vec![[0.0; 2]; self.map.len()];
+        let mut blocked_landed = vec![[0.0; 2]; self.map.len()];
         for (tally, sun) in round.tallies.iter().zip(&self.suns) {
             let weighed = |values: &[f64; K]| -> f64 {
                 (0..3)
                     .map(|c| values[self.coefficient_of[c]] * sun.power[c])
                     .sum()
             };
-            for (sum, (stopped, landed)) in stopped_landed
+            for (sum, (blocked, landed)) in blocked_landed
                 .iter_mut()
                 .zip(tally.shaded.iter().zip(&tally.texels))
             {
-                sum[0] += weighed(stopped);
+                sum[0] += weighed(blocked);
                 sum[1] += weighed(landed);
             }
         }
         Some(
-            stopped_landed
+            blocked_landed
                 .into_iter()
-                .map(|[stopped, landed]| share(stopped, landed))
+                .map(|[blocked, landed]| share(blocked, landed))
                 .collect(),
         )
     }
@@ -396,10 +396,10 @@ impl<'a, const K: usize> Counter<'a, K> {
     }
 }
 
-/// stopped / (stopped + landed); 0 where there is no light either way.
-pub(super) fn share(stopped: f64, landed: f64) -> f64 {
-    if stopped > 0.0 {
-        stopped / (stopped + landed)
+/// blocked / (blocked + landed); 0 where there is no light either way.
+pub(super) fn share(blocked: f64, landed: f64) -> f64 {
+    if blocked > 0.0 {
+        blocked / (blocked + landed)
     } else {
         0.0
     }

@@ -1,30 +1,30 @@
-//! The float64 truth on the CPU: the light on floors, objects and what a camera sees, by counting plain rays, and in closed form.
+//! The float64 truth on the CPU: the light on floors, on objects and in camera views, by counting plain rays, and in closed form.
 //!
 //! Nothing here is a port of a shader. The renderer carries flux in beams with exact coverage on a water grid; the reference
 //! refracts single rays and counts where they land. Both read the same scene, `physics` and `waves`; nothing else is shared.
 //!
-//! - `truth`: one entry for every kind of output, and what it answers; `disk` keeps the answers;
-//! - `settings`: how long to count, and why a scene cannot be counted;
-//! - `checks`: figures that can be counted with, and the lights that count;
+//! - `truth`: the entry point for all kinds of output, and its result; `disk` keeps results;
+//! - `settings`: when to stop, and why a scene cannot be traced;
+//! - `checks`: checks of the scene's values, and the lights that are traced;
 //! - `place`: a scene in local coordinates, and where a ray meets the water; `sky`, its skies;
-//! - `window`: the piece of water that can light a map;
-//! - `lattice`: where the rays start; `slanted`: the same in cells that fit a tilted receiver; `rings`: the same around the foot of a
-//!   point light; `strata`: the one or the other;
-//! - `light`: a light in its place, and its ray through a place of the water;
+//! - `window`: the rectangle of water that can light a map;
+//! - `lattice`: where the rays start; `slanted`: a lattice with cells that fit a tilted receiver; `rings`: a lattice around the foot of a
+//!   point light; `strata`: either of these two;
+//! - `light`: a light in local coordinates, and its ray through a place on the water;
 //! - `refract`: many rays at once through the surface;
-//! - `occluders`: the triangles a ray meets;
-//! - floor maps: `floor`, the texels rays are counted in; `tally`, what a batch of rays brought, term by term; `trace`, one sun,
-//!   one lattice, all rays; `lamp`, the same for a point light; `map`, rounds of ever finer lattices until the map is good enough;
-//! - maps on objects: `texels`, where the map's texels lie; `object_rays`, the rays of one light that may strike an object;
-//!   `object_map`, where they do;
-//! - views: `camera`, the points that pixels show; `patch`, the light through the water on one of them, searched from there; `shine`,
-//!   that of a point light under water, straight; `view`, all of them;
+//! - `occluders`: the triangles that a ray hits;
+//! - floor maps: `floor`, the map's texels; `tally`, sums over a batch of rays, term by term; `trace`, all rays of one sun and one lattice;
+//!   `lamp`, the same for a point light; `map`, rounds of finer and finer lattices until the error is small enough;
+//! - maps on objects: `texels`, where the map's texels lie; `object_rays`, the rays of one light that may hit an object;
+//!   `object_map`, where they hit it;
+//! - views: `camera`, the points that pixels show; `patch`, the light through the water on one of them, searched from that point; `shine`,
+//!   the direct light of a point light under water; `view`, all points;
 //! - `shadow_edge`: which values lie near the edge of a shadow;
-//! - `closed_form` and `paraboloid`: scenes with a formula instead of rays.
+//! - `closed_form` and `paraboloid`: exact formulas for simple scenes.
 //!
-//! Model: suns are points at infinity; what a point light under water sends up to the surface ends there; waves do not shade each
-//! other and light that a surface reflects is not followed; objects stop light under the water only, not on its way to the water;
-//! light that is refracted upwards is lost.
+//! Model: suns are points at infinity. Light that a point light under water sends up ends at the surface. Waves do not shade each
+//! other. Reflected light is not followed. Objects block light under the water only, not above it. Light that is refracted upwards is
+//! lost.
 
 mod camera;
 mod checks;

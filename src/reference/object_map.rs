@@ -1,7 +1,7 @@
 //! The light on an object, in the texels of its map.
 //!
-//! Plain rays go down all over the water that can light the object, or straight from a point light under water. Those that strike
-//! the surface that is asked for, the first along the map's axis or one behind it, are counted in the texel they strike; the cells
+//! Plain rays enter everywhere through the water that can light the object, or go straight from a point light under water. Rays that
+//! hit the requested surface, the first along the map's axis or one behind it, are counted in the texel that they hit. The cells
 //! of the lattice are the texels' shadows on the water, so flat water gives every texel of the first surface the same count.
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -23,15 +23,15 @@ use crate::scene::ResolvedScene;
 
 /// Rays per texel of evenly lit water in the first round, each half.
 const FIRST_POINTS: f64 = 8.0;
-/// Bands of rows; each has its own map until they are added up in order.
+/// The number of bands of rows. Each has its own map, and the maps are summed in order.
 const BANDS: usize = 8;
-/// Nearer along the axis than this share of the object's size a surface does not hide another: rounding.
+/// Surfaces closer together along the axis than this share of the object's size do not hide each other: they differ by rounding only.
 const SAME_SURFACE: f64 = 1e-7;
 
-/// Landed and stopped light per texel: (r, g, b) and the same again, W.
+/// Landed and blocked light per texel, W: (r, g, b) of each.
 type Texels = Vec<[f64; 6]>;
 
-/// The truth about the map on object `index`, of the surface that `layer` others hide along the map's axis.
+/// The truth for the map on object `index`, of the surface that lies behind `layer` others along the map's axis.
 pub(super) fn object_map(
     resolved: &ResolvedScene,
     (index, layer): (u32, u32),
@@ -49,7 +49,7 @@ pub(super) fn object_map(
         })?;
     let place = Place::of(resolved, DVec2::new(x_m, z_m))?;
     let side = resolved.scene.quality.level_map_texels;
-    // The first light says along which axis the map is seen.
+    // The first light defines the map's axis.
     let light = place.lights.first();
     let grid = light.and_then(|l| TexelGrid::of(resolved, object, &place, &l.source));
     let (Some(light), Some(grid)) = (light, grid) else {
@@ -71,7 +71,7 @@ pub(super) fn object_map(
     })
 }
 
-/// A map that no light reaches; without a light there is no axis to look along, and nothing to compare.
+/// A map that no light reaches: without a light the map has no axis, and there is nothing to compare.
 fn dark(side: u32) -> Truth {
     let texels = side as usize * side as usize;
     Truth {
@@ -106,9 +106,9 @@ struct Counter<'a> {
     light: &'a PlacedLight,
     grid: &'a TexelGrid,
     object: usize,
-    /// How many of the object's surfaces lie before the one that is asked for, along the axis.
+    /// The number of the object's surfaces in front of the requested one along the axis.
     layer: u32,
-    /// What may strike it; `None`: nothing.
+    /// The rays that may hit it; `None` if there are none.
     rays: Option<ObjectRays<'a>>,
     same_surface_m: f64,
 }
@@ -133,7 +133,7 @@ impl<'a> Counter<'a> {
         }
     }
 
-    /// |n·axis| of the surface that is asked for, along the axis at each texel's centre.
+    /// |n·axis| of the requested surface at each texel's centre.
     fn cosines(&self, side: u32) -> Vec<Option<f64>> {
         let axis = self.grid.axis;
         let bounds = self.place.occluders.bounds[self.object];
@@ -159,7 +159,7 @@ impl<'a> Counter<'a> {
             .collect()
     }
 
-    /// Both halves of the last round, and its rays.
+    /// Both halves of the last round, and the number of its rays.
     fn rounds(
         &self,
         cosines: &[Option<f64>],
@@ -245,7 +245,7 @@ impl<'a> Counter<'a> {
         total
     }
 
-    /// Books a ray where it crosses the surface that is asked for.
+    /// Counts a ray where it crosses the requested surface.
     fn book(&self, ray: &Ray, per_point: f64, sum: &mut Texels, scratch: &mut Scratch) {
         let occluders = &self.place.occluders;
         let Ray {
@@ -280,13 +280,13 @@ impl<'a> Counter<'a> {
             return;
         }
         let path_m = whole_m * fraction;
-        // What the ray meets there is the surface itself; anything a little before it stands in the way.
+        // The ray meets the surface itself there; anything slightly before that blocks it.
         let until = fraction - self.same_surface_m / whole_m;
         let before_m = from_m.lerp(to_m, until.max(0.0));
-        let stopped = until > 0.0
+        let blocked = until > 0.0
             && (self.behind_floor(from_m, before_m)
                 || occluders.blocks(from_m, before_m, None, 1.0, stack));
-        let first_channel = if stopped { 3 } else { 0 };
+        let first_channel = if blocked { 3 } else { 0 };
         for c in 0..3 {
             sum[texel][first_channel + c] += flux
                 * transmission(self.place.extinction_per_m[c], path_m)
@@ -295,12 +295,12 @@ impl<'a> Counter<'a> {
         }
     }
 
-    /// Whether a ray that goes up has left the water before it is at `p_m`: what goes up from a light under water ends at the surface.
+    /// Whether an upward ray has left the water before it reaches `p_m`: light that goes up from a light under water ends at the surface.
     fn out_of_water(&self, from_m: DVec3, p_m: DVec3) -> bool {
         p_m.y > from_m.y && self.place.over_water_m(p_m) > 0.0
     }
 
-    /// Whether the way between two points goes through the floor.
+    /// Whether the segment between two points crosses the floor.
     fn behind_floor(&self, from_m: DVec3, to_m: DVec3) -> bool {
         let Some(floor) = &self.place.floor else {
             return false;
@@ -309,7 +309,7 @@ impl<'a> Counter<'a> {
         (0.0..=1.0).contains(&fraction) && floor.spans(from_m.lerp(to_m, fraction))
     }
 
-    /// W/m² on the surface of each texel: its flux over the area it shows to the axis, times the cosine.
+    /// W/m² on the surface of each texel: its flux over its projected area across the axis, times the cosine.
     fn irradiance(&self, sums: &Texels, cosines: &[Option<f64>]) -> Vec<[f64; 3]> {
         sums.iter()
             .zip(cosines)
@@ -321,11 +321,11 @@ impl<'a> Counter<'a> {
     }
 }
 
-/// Space that every ray uses again.
+/// Scratch space, reused by all rays.
 #[derive(Default)]
 struct Scratch {
     stack: Vec<usize>,
     crossings: Vec<f64>,
-    /// Distances of the surfaces before a point.
+    /// Distances of the surfaces in front of a point.
     before_m: Vec<f64>,
 }

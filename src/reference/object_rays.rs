@@ -1,5 +1,5 @@
-//! The rays of one light that may strike an object, in (s, t) of which every unit gets the same number: of a texel's size under flat
-//! water, or as seen from a point light under water.
+//! The rays of one light that may hit an object, parametrised by (s, t). Every unit of (s, t) gets the same number of rays. A unit has the
+//! size of a texel, seen through flat water or from a point light under water.
 
 use std::f64::consts::TAU;
 
@@ -14,21 +14,21 @@ use super::slanted::Cells;
 use super::window::{LightWindow, Target};
 use crate::physics::fresnel::fresnel_transmittance;
 
-/// Part of the object's size that rays go on beyond it.
+/// How far rays continue beyond the object, as a share of its size.
 const BEYOND: f64 = 1e-3;
 
-/// A ray on its way to the object.
+/// A ray towards the object.
 pub(super) struct Ray {
     pub(super) from_m: DVec3,
     /// A point beyond the object.
     pub(super) to_m: DVec3,
-    /// Between the two, m.
+    /// Distance between the two, m.
     pub(super) path_m: f64,
     /// Flux per power of the light, m² of a sun or sr of a point light, for a lattice with one point per unit.
     pub(super) flux: f64,
 }
 
-/// Where they come from.
+/// Where the rays come from.
 enum Origin {
     /// The water, with a sun above in this direction.
     Sun(Cells, DVec3),
@@ -38,7 +38,7 @@ enum Origin {
     Cone(Cone),
 }
 
-/// Directions from a point light: (1 − cos θ, φ) around an axis, in units of one's choice, which are equal solid angles.
+/// Directions from a point light: (1 − cos θ, φ) around an axis, in units that the caller chooses; units are equal solid angles.
 struct Cone {
     lamp_m: DVec3,
     axis: DVec3,
@@ -46,7 +46,7 @@ struct Cone {
     unit: f64,
 }
 
-/// Those of one lattice.
+/// The rays of one lattice.
 pub(super) struct Volley<'a> {
     rays: &'a ObjectRays<'a>,
     lattice: Lattice,
@@ -54,12 +54,12 @@ pub(super) struct Volley<'a> {
     refractor: Option<RowRefractor>,
 }
 
-/// All of them.
+/// All rays of one light to one object.
 pub(super) struct ObjectRays<'a> {
     place: &'a Place,
     light: &'a PlacedLight,
     origin: Origin,
-    /// Rectangle of (s, t) that holds all that can reach the object.
+    /// Rectangle of (s, t) that holds all rays that can reach the object.
     pub(super) part: LightWindow,
     bounds: Target,
     /// A plane below the object, m below the water at rest.
@@ -67,14 +67,14 @@ pub(super) struct ObjectRays<'a> {
 }
 
 impl Cone {
-    /// The directions in which the ball of `radius_m` around `middle_m` is seen from `lamp_m`, and the rectangle of (s, t) that they
-    /// are; a unit is what `square_m2` there is seen under.
+    /// The directions from `lamp_m` to the ball of `radius_m` around `middle_m`, and their rectangle of (s, t). A unit is the solid
+    /// angle of `square_m2` at the ball.
     fn of(lamp_m: DVec3, middle_m: DVec3, radius_m: f64, square_m2: f64) -> (Self, LightWindow) {
         let way_m = middle_m - lamp_m;
         let distance_m = way_m.length();
         let axis = way_m.try_normalize().unwrap_or(-DVec3::Y);
         let (u, v) = axis.any_orthonormal_pair();
-        // From within the ball it is all around.
+        // From inside the ball these are all directions.
         let from_axis = if distance_m > radius_m {
             let sine = radius_m / distance_m;
             sine * sine / (1.0 + (1.0 - sine * sine).sqrt())
@@ -126,7 +126,7 @@ impl<'a> ObjectRays<'a> {
                 position_m,
                 submerged: false,
             } => {
-                // Texels in the middle of the object: others are lit by as much of the rings, or nearly.
+                // Texels in the middle of the object; others get nearly the same part of the rings.
                 let texel = (middle_m, texel.normalize_or_zero(), texel.length());
                 let rings = light.rings(place, position_m, texel);
                 let part = rings.around_window(&light.window(place, bounds));
@@ -171,7 +171,7 @@ impl<'a> ObjectRays<'a> {
         }
     }
 
-    /// Where a ray leaves the ball around the object's middle that holds it, at the latest.
+    /// The latest point where a ray leaves the ball that contains the object.
     fn beyond(&self, from_m: DVec3, direction: DVec3) -> (DVec3, f64) {
         let middle_m = (self.bounds.min_m + self.bounds.max_m) * 0.5;
         let size_m = (self.bounds.max_m - self.bounds.min_m).length();
@@ -179,10 +179,10 @@ impl<'a> ObjectRays<'a> {
         (from_m + direction * path_m, path_m)
     }
 
-    /// The ray of a point light through a place that stands for `m2` of water.
+    /// The ray of a point light through a place that represents `m2` of water.
     fn through_water(&self, (water_m, m2): (DVec2, f64)) -> Option<Ray> {
         let bent = self.light.bend(self.place, water_m)?;
-        // What is refracted upwards is lost, as that of a sun.
+        // Light that is refracted upwards is lost, as for a sun.
         if bent.direction.y >= -1e-9 {
             return None;
         }

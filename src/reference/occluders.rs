@@ -1,4 +1,4 @@
-//! The first triangle a ray meets.
+//! Finds the first triangle on a ray.
 
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
@@ -43,23 +43,23 @@ impl BHShape<f64, 3> for WorldTriangle {
     }
 }
 
-/// What stops a ray before the floor.
+/// What blocks a ray before the floor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
-    /// Part of the way to the floor, 0 … 1.
+    /// Fraction of the distance to the floor, 0 … 1.
     pub(super) fraction: f64,
     /// Index into the scene's objects.
     pub(super) object: usize,
 }
 
-/// What a ray sees.
+/// The surface that a ray hits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
-    /// Way to it, m.
+    /// Distance to it, m.
     pub(super) distance_m: f64,
     /// Index into the scene's objects.
     pub(super) object: usize,
-    /// Unit shading normal on the side that is seen.
+    /// Unit shading normal on the side of the ray.
     pub(super) normal: DVec3,
 }
 
@@ -134,7 +134,7 @@ impl Occluders {
         })
     }
 
-    /// Whether there is nothing to meet.
+    /// Whether there are no triangles.
     pub(super) fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
@@ -167,7 +167,7 @@ impl Occluders {
     }
 
     /// The first triangle that the ray from `from_m` along unit `direction` meets before `until_m`, with its shading normal
-    /// turned to the side that is seen.
+    /// on the side of the ray.
     pub(super) fn first_seen(
         &self,
         from_m: DVec3,
@@ -178,7 +178,7 @@ impl Occluders {
         self.first_of(None, from_m, direction, until_m, stack)
     }
 
-    /// The same for one object alone, however far away.
+    /// Like the above, for one object and without a limit of distance.
     pub(super) fn first_seen_of(
         &self,
         object: usize,
@@ -218,8 +218,8 @@ impl Occluders {
         best
     }
 
-    /// Whether a triangle stands between `from_m` and `to_m`. Those of object `own` count up to the fraction `own_until` of
-    /// the way only.
+    /// Whether a triangle is between `from_m` and `to_m`. Triangles of object `own` count only up to the fraction `own_until` of
+    /// the distance.
     pub(super) fn blocks(
         &self,
         from_m: DVec3,
@@ -237,7 +237,7 @@ impl Occluders {
             |triangle, [t, ..], until| {
                 if Some(triangle.object) != own || t < own_until {
                     blocked = true;
-                    return -1.0; // nothing more to look for
+                    return -1.0; // ends the search
                 }
                 until
             },
@@ -245,7 +245,7 @@ impl Occluders {
         blocked
     }
 
-    /// Puts into `fractions` where the way from `from_m` to `to_m` crosses `object`, in order.
+    /// Fills `fractions` with the fractions of the distance from `from_m` to `to_m` at which the segment crosses `object`, in order.
     pub(super) fn crossings(
         &self,
         object: usize,
@@ -270,7 +270,7 @@ impl Occluders {
         fractions.sort_by(f64::total_cmp);
     }
 
-    /// Whether `object` is met farther than `beyond_m` from `from_m` along unit `direction`.
+    /// Whether the ray from `from_m` along unit `direction` hits `object` farther away than `beyond_m`.
     pub(super) fn meets_object(
         &self,
         object: usize,
@@ -296,8 +296,8 @@ impl Occluders {
         met
     }
 
-    /// How many surfaces of `object` the ray from a point along a unit direction meets farther than `apart_m`; what lies nearer to
-    /// one another than that is one surface. `distances_m` is scratch space.
+    /// The number of surfaces of `object` that the ray from a point along a unit direction crosses farther away than `apart_m`.
+    /// Surfaces closer to each other than `apart_m` count as one. `distances_m` is scratch space.
     pub(super) fn surfaces_beyond(
         &self,
         object: usize,
@@ -324,20 +324,20 @@ impl Occluders {
         distances_m.len() - again.count()
     }
 
-    /// Calls `visit` with every triangle that the ray `from_m` + t `way` meets at 0 ≤ t ≤ `until`, in no order; (t, u, v) of
-    /// the meeting, and `until`, for which it gives the new one.
+    /// Calls `visit` for every triangle that the line `from_m` + t `ray` crosses at 0 ≤ t ≤ `until`, in no particular order, with
+    /// the (t, u, v) of the crossing and `until`; `visit` returns the new `until`.
     fn walk(
         &self,
         from_m: DVec3,
-        way: DVec3,
+        ray: DVec3,
         mut until: f64,
         stack: &mut Vec<usize>,
         mut visit: impl FnMut(&WorldTriangle, [f64; 3], f64) -> f64,
     ) {
-        let per_way = way.recip();
+        let inverse = ray.recip();
         let meets = |min_m: DVec3, max_m: DVec3, until: f64| -> bool {
-            // f64::min and max drop the NaN of 0 · ∞: a ray within a face's plane counts as meeting the box.
-            let (t_a, t_b) = ((min_m - from_m) * per_way, (max_m - from_m) * per_way);
+            // f64::min and max drop the NaN of 0 · ∞: a ray within a face's plane counts as hitting the box.
+            let (t_a, t_b) = ((min_m - from_m) * inverse, (max_m - from_m) * inverse);
             let enter = (t_a.x.min(t_b.x))
                 .max(t_a.y.min(t_b.y))
                 .max(t_a.z.min(t_b.z));
@@ -373,7 +373,7 @@ impl Occluders {
                 }
                 BvhNode::Leaf { shape_index, .. } => {
                     let triangle = &self.triangles[*shape_index];
-                    if let Some(met) = triangle.crossing(from_m, way)
+                    if let Some(met) = triangle.crossing(from_m, ray)
                         && (0.0..=until).contains(&met[0])
                     {
                         until = visit(triangle, met, until);
@@ -388,10 +388,10 @@ impl Occluders {
 }
 
 impl WorldTriangle {
-    /// (t, u, v) where the line `from_m + t · way` crosses the triangle. Möller & Trumbore, Journal of Graphics Tools 2(1), 1997,
+    /// (t, u, v) where the line `from_m + t · ray` crosses the triangle. Möller & Trumbore, Journal of Graphics Tools 2(1), 1997,
     /// without culling: water lights both sides of an open mesh.
-    fn crossing(&self, from_m: DVec3, way: DVec3) -> Option<[f64; 3]> {
-        let across = way.cross(self.edge_2_m);
+    fn crossing(&self, from_m: DVec3, ray: DVec3) -> Option<[f64; 3]> {
+        let across = ray.cross(self.edge_2_m);
         let determinant = self.edge_1_m.dot(across);
         if determinant == 0.0 {
             return None;
@@ -399,7 +399,7 @@ impl WorldTriangle {
         let to_origin = from_m - self.corner_m;
         let u = to_origin.dot(across) / determinant;
         let turned = to_origin.cross(self.edge_1_m);
-        let v = way.dot(turned) / determinant;
+        let v = ray.dot(turned) / determinant;
         if u < 0.0 || v < 0.0 || u + v > 1.0 {
             return None;
         }
@@ -407,8 +407,8 @@ impl WorldTriangle {
         Some([t, u, v])
     }
 
-    /// Interpolated unit normal at (u, v), on the side that a ray along `direction` sees. The face says which side that is: a
-    /// shading normal turns away at silhouettes.
+    /// Interpolated unit normal at (u, v), on the side that a ray along `direction` comes from. The face decides which side that is,
+    /// because a shading normal can face away at silhouettes.
     fn normal_towards(&self, direction: DVec3, u: f64, v: f64) -> DVec3 {
         let [a, b, c] = self.normals;
         let shading = (a * (1.0 - u - v) + b * u + c * v).normalize();

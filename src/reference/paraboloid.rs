@@ -1,4 +1,4 @@
-//! The crest of a long wave as a lens: what it focuses, where, and how brightly.
+//! The crest of a long wave as a lens: where its focus is, and how bright.
 
 use crate::physics::fresnel::fresnel_transmittance;
 

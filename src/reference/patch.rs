@@ -1,8 +1,8 @@
-//! The light through the water that falls on a small square, searched from the square.
+//! The light through the water on a small square, found by a search that starts at the square.
 //!
-//! The water that can light it is quartered over and over; a piece from which no ray can reach the square is left out. How far
-//! apart the rays of a piece can land follows from the steepest slope and the strongest curvature of the waves, and of a point light
-//! from its distance, so nothing is lost. In what remains plain rays are counted.
+//! The water that can light it is quartered recursively, and pieces from which no ray can reach the square are dropped. How far
+//! apart the rays of a piece can land is bounded by the steepest slope and the strongest curvature of the waves, and for a point light
+//! also by its distance, so no light is lost. In the remaining pieces plain rays are counted.
 
 use std::f64::consts::SQRT_2;
 
@@ -18,11 +18,12 @@ use crate::physics::attenuation::transmission;
 use crate::physics::fresnel::fresnel_transmittance;
 use crate::physics::refraction::normal_from_slope;
 
-/// A piece of water is not quartered any more once its rays land this close together, in half sides of the square …
+/// A piece of water is not quartered further once its rays land this close together, in half sides of the square …
 const CLOSE: f64 = 0.5;
-/// … or once it holds so few rays that counting them is cheaper.
+/// … or once it has so few rays that counting them is cheaper.
 const FEW_RAYS: f64 = 4.0;
-/// Sides of the square within which its own object does not shade it: the square leaves the curved surface a little.
+/// Distance, in sides of the square, within which its own object does not shade it: the flat square does not lie exactly on the
+/// curved surface.
 const OWN_REACH: f64 = 2.0;
 
 /// A square that receives light.
@@ -36,33 +37,33 @@ pub(super) struct Patch {
     object: Option<usize>,
 }
 
-/// Light on a square; W/m² once it is scaled.
+/// Light on a square, W/m² after scaling.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Landed {
-    /// What arrives.
+    /// Light that arrives.
     pub(super) lit: [f64; 3],
-    /// What would arrive, had no mesh stood in the way.
-    pub(super) stopped: [f64; 3],
+    /// Light that meshes block: it would arrive without them.
+    pub(super) blocked: [f64; 3],
 }
 
 impl Landed {
     pub(super) fn add(&mut self, other: &Self) {
         add_to(&mut self.lit, &other.lit);
-        add_to(&mut self.stopped, &other.stopped);
+        add_to(&mut self.blocked, &other.blocked);
     }
 
     /// Multiplies each channel.
     pub(super) fn scale(&mut self, factor: [f64; 3]) {
         for (c, factor) in factor.into_iter().enumerate() {
             self.lit[c] *= factor;
-            self.stopped[c] *= factor;
+            self.blocked[c] *= factor;
         }
     }
 
-    /// Adds a ray of flux `entered` that is on its way through `path_m` of water.
+    /// Adds a ray of flux `entered` that passes `path_m` of water.
     pub(super) fn book(&mut self, entered: f64, [r, g, b]: [f64; 3], path_m: f64, blocked: bool) {
         let target = if blocked {
-            &mut self.stopped
+            &mut self.blocked
         } else {
             &mut self.lit
         };
@@ -77,7 +78,7 @@ impl Landed {
     }
 }
 
-/// What is known of all rays of a piece of water.
+/// A bound for all rays of a piece of water.
 enum Reach {
     /// None lands on the square.
     Nothing,
@@ -138,7 +139,7 @@ impl Patch {
         (self.center_m - (sides_m[0] + sides_m[1]) * 0.5, sides_m)
     }
 
-    /// Whether something stands between `from_m` and `to_m`, a point of the square.
+    /// Whether something is between `from_m` and `to_m`, a point of the square.
     pub(super) fn blocked(
         &self,
         place: &Place,
@@ -166,7 +167,7 @@ impl Patch {
             .blocks(from_m, to_m, self.object, own_until, stack)
     }
 
-    /// Whether a mesh may stand between the square and the box `others`.
+    /// Whether a mesh may be between the square and the box `others`.
     pub(super) fn may_be_shaded(&self, place: &Place, others: Target) -> bool {
         let own = self.bounds();
         let (low, high) = (own.min_m.min(others.min_m), own.max_m.max(others.max_m));
@@ -175,19 +176,19 @@ impl Patch {
     }
 }
 
-/// The search for one light's way through the water to one square.
+/// The search for the rays of one light that pass through the water to one square.
 pub(super) struct Search<'a> {
     place: &'a Place,
     light: &'a PlacedLight,
     patch: &'a Patch,
     strata: Strata,
-    /// Whether a mesh may stand between the water and the square.
+    /// Whether a mesh may be between the water and the square.
     may_be_shaded: bool,
     window: LightWindow,
 }
 
 impl<'a> Search<'a> {
-    /// `None` of light that comes through no water.
+    /// `None` for light that does not pass through the water surface.
     pub(super) fn new(place: &'a Place, light: &'a PlacedLight, patch: &'a Patch) -> Option<Self> {
         let bounds = patch.bounds();
         let window = light.window(place, bounds);
@@ -207,14 +208,14 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Two independent estimates from about `points` rays per square of evenly lit water each, and how many rays were counted.
+    /// Two independent estimates from about `points` rays per square of evenly lit water each, and the number of rays.
     pub(super) fn light(
         &self,
         points: f64,
         key: u64,
         stack: &mut Vec<usize>,
     ) -> ([Landed; 2], u64) {
-        // Above the crests, or out of the light's reach.
+        // Above the crests, or beyond the light's reach.
         if !self.window.min_m.is_finite() || !self.window.max_m.is_finite() {
             return Default::default();
         }
@@ -270,7 +271,7 @@ impl<'a> Search<'a> {
         pieces
     }
 
-    /// What the rays of the piece around `water_m` can reach whose corners lie `radius_m` away.
+    /// Where the rays can land of the piece around `water_m` whose corners lie `radius_m` away.
     ///
     /// Within the piece the slope changes by at most the curvature times the radius, the unit normal by no more than that, and the
     /// unit vector to a point light by at most δ/(r − δ) when its start moves by δ. So the cosine changes by at most the sum c′ of
@@ -322,7 +323,7 @@ impl<'a> Search<'a> {
         apart > turned + 2.0 * blur_m / (2.0 * distance_m - blur_m)
     }
 
-    /// Books the ray that enters at `water_m` and stands for `m2` of water, if it crosses the square against its normal.
+    /// Counts the ray that enters at `water_m` and represents `m2` of water, if it crosses the square against its normal.
     fn count(&self, (water_m, m2): (DVec2, f64), sum: &mut Landed, stack: &mut Vec<usize>) {
         let Some(ray) = self.light.bend(self.place, water_m) else {
             return;

@@ -1,4 +1,4 @@
-//! A scene in local coordinates, as the engines for views and objects need it.
+//! A scene in local coordinates, for the truths of views and objects.
 
 use std::cell::LazyCell;
 
@@ -48,7 +48,7 @@ pub(super) struct Place {
     sky: Sky,
     /// Meshes, in the same coordinates.
     pub(super) occluders: Occluders,
-    /// Suns above the horizon and point lights above the floor that the output counts: first the suns.
+    /// Suns above the horizon and point lights above the floor that contribute to the output; suns come first.
     pub(super) lights: Vec<PlacedLight>,
     /// Largest second derivative of the water's height along any direction, 1/m.
     bend_per_m: f64,
@@ -59,8 +59,8 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The scene around `middle_m`, world (x, z): what is asked about should lie near it, so that it is exact far from the world's
-    /// origin too.
+    /// The scene around `middle_m`, world (x, z). The requested points should be near it, so that they are accurate far from the
+    /// world's origin too.
     pub(super) fn of(resolved: &ResolvedScene, middle_m: DVec2) -> Result<Self, ReferenceError> {
         let scene = &resolved.scene;
         let extinction_per_m = check_water(&scene.water)?;
@@ -140,9 +140,9 @@ impl Place {
     /// First parameter t > 0 at which the ray `from_m` + t `direction` (unit), that starts on `side` (1 above, −1 below) of the
     /// water, crosses it.
     ///
-    /// Every step is the longest that cannot pass the surface: as far as the steepest slope allows, or, with the derivative here
-    /// and the strongest curvature, as far as the parabola below the height stays positive. The latter turns into Newton's
-    /// method from the safe side, so that the last digits are exact and no crest is jumped.
+    /// Every step is the longest that cannot cross the surface: as far as the steepest slope allows, or as far as the parabola from the
+    /// local derivative and the strongest curvature, a lower bound of the height, stays positive. The latter converges like Newton's
+    /// method from the safe side, so that the last digits are exact and no crest is skipped.
     pub(super) fn meet_water(&self, from_m: DVec3, direction: DVec3, side: f64) -> Option<f64> {
         /// Steps after which a ray that neither meets the water nor leaves the layer of waves is given up.
         const MOST_STEPS: u32 = 100_000;

@@ -1,7 +1,7 @@
-//! Many rays at once through the surface: plain arrays and no branches, so that the compiler uses vector instructions.
+//! Refracts many rays at once: plain arrays and no branches, so that the compiler uses vector instructions.
 //!
 //! The same formulas as [`crate::physics::refraction`] and [`crate::physics::fresnel`], without a unit normal where its
-//! length drops out; the tests hold the map against the closed forms, which use those.
+//! length drops out; tests compare the map with the closed forms, which use those.
 
 use glam::{DVec2, DVec3};
 
@@ -72,14 +72,14 @@ impl RowRefractor {
         }
     }
 
-    /// Sends [`BLOCK`] rays down from `start_m` on.
+    /// Traces [`BLOCK`] rays from `start_m` on.
     pub(super) fn send(&self, start_m: DVec2, block: &mut Block) {
         self.rows.evaluate(start_m, &mut block.water);
         self.refract(block);
         self.drop(start_m, block);
     }
 
-    /// Fresnel's split, and the refracted direction as (sideways per metre of path, down per metre of path).
+    /// The Fresnel reflectance, and the refracted direction as (sideways per metre of path, down per metre of path).
     fn refract(&self, block: &mut Block) {
         let Block {
             water: RowPoints {
@@ -115,7 +115,7 @@ impl RowRefractor {
             let transmittance =
                 2.0 * eta * cos_i * cos_t * (s_sum * s_sum + p_sum * p_sum) * (per_both * per_both);
             facing[i] = lit;
-            // A face turned away has no flux; the quotients above may be 0/0 there.
+            // A surface that faces away has no flux; the quotients above may be 0/0 there.
             reflected[i] = if toward > 0.0 { lit * reflectance } else { 0.0 };
             entered[i] = if toward > 0.0 {
                 lit * transmittance
@@ -129,7 +129,7 @@ impl RowRefractor {
         }
     }
 
-    /// From direction to landing point.
+    /// Computes the landing point from the direction.
     fn drop(&self, start_m: DVec2, block: &mut Block) {
         let Block {
             water: RowPoints { height_m, .. },

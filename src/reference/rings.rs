@@ -1,9 +1,9 @@
-//! Places around the foot of a point light, as many where it shines brightest as its light deserves.
+//! Sample places around the foot of a point light, denser where it is brightest.
 //!
-//! A lamp at height h lights a plane with I h/(ρ² + h²)^(3/2) at distance ρ from its foot: of one a millimetre above the water half the
-//! light goes through a spot of two millimetres, which an even lattice hardly meets. Here a lattice lies over (w, φ) with
-//! w = q + κ (1 − e^(−q)), q = ½ ln(1 + ρ²/h²). The second term spreads places as a level plane is lit, the first gives every ring of
-//! twice the width the same number, which is what the flanks of waves need that the light only grazes. Each place stands for
+//! A lamp at height h lights a plane with I h/(ρ² + h²)^(3/2) at distance ρ from its foot: for a lamp a millimetre above the water, half
+//! the light goes through a spot of two millimetres, which an even lattice hardly samples. Here the lattice lies over (w, φ) with
+//! w = q + κ (1 − e^(−q)), q = ½ ln(1 + ρ²/h²). The second term distributes places like the light on a level plane. The first gives
+//! every ring of twice the width the same number; the flanks of waves at grazing light need this. Each place represents
 //! (ρ² + h²)/(1 + κ e^(−q)) dw dφ of the plane.
 
 use std::f64::consts::{PI, TAU};
@@ -12,13 +12,13 @@ use glam::DVec2;
 
 use super::window::LightWindow;
 
-/// κ: how many times as many places as by the rings there are where a level plane is lit. Of a light a millimetre above the water, with
-/// metres of it to look at, about half of them.
+/// κ: the weight of the places distributed like the light on a level plane, relative to those of the rings. For a light a millimetre
+/// above metres of water they are about half of all places.
 const CORE: f64 = 8.0;
-/// Steps of Newton's method, far more than it takes.
+/// Steps of Newton's method, far more than it needs.
 const MOST_STEPS: u32 = 64;
 
-/// The places, on any plane; coordinates (s, t) are (w, φ) in units of one's choice.
+/// The places, on any plane; coordinates (s, t) are (w, φ) in units that the caller chooses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rings {
     foot_m: DVec2,

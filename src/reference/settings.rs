@@ -1,11 +1,11 @@
-//! How long to count, and why a scene cannot be counted.
+//! When the reference stops tracing, and why a scene cannot be traced.
 
 use std::path::PathBuf;
 
-/// When the counting stops.
+/// When tracing stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceSettings {
-    /// Relative L1 error at which the map is good enough, above 0; `None`: spend all of `max_rays` at once.
+    /// Relative L1 error at which tracing stops, above 0; `None`: spend all of `max_rays` at once.
     pub target_error: Option<f64>,
     /// Most rays of a round, both halves and all lights together, 1 …
     pub max_rays: u64,
@@ -43,13 +43,13 @@ impl ReferenceSettings {
 /// When the search for a [`super::Truth`] stops, and where it is kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TruthSettings {
-    /// Relative L1 error at which the truth is good enough, above 0; `None`: spend `max_rays`.
+    /// Relative L1 error at which the search stops, above 0; `None`: spend `max_rays`.
     pub target_error: Option<f64>,
     /// Most rays of a round, both halves and all lights together, 1 …
     pub max_rays: u64,
-    /// Most pixels of a view that are looked at, 1 …; maps are always whole.
+    /// Most pixels of a view that are traced, 1 …; maps are always complete.
     pub most_points: u32,
-    /// Folder that keeps truths from one run to the next; made when it is not there. `None`: nothing is kept.
+    /// Folder that keeps truths from one run to the next; created if it does not exist. `None`: nothing is kept.
     pub disk: Option<PathBuf>,
 }
 
@@ -65,7 +65,7 @@ impl Default for TruthSettings {
 }
 
 impl TruthSettings {
-    /// What the counting engines go by.
+    /// The settings of the tracing functions.
     pub(super) fn counting(&self) -> ReferenceSettings {
         ReferenceSettings {
             target_error: self.target_error,
@@ -93,10 +93,10 @@ pub enum ReferenceError {
         "the reference counts light on the floor only: output.kind must be \"irradiance_map\" and output.receiver \"floor\""
     )]
     NotAFloorMap,
-    /// Nothing to count on.
+    /// There is no receiver.
     #[error("the scene has no floor; the reference needs one")]
     NoFloor,
-    /// The map has no area, no texels, or corners that are no numbers.
+    /// The map has no area, no texels, or corners that are not finite.
     #[error(
         "the map from {min_m:?} to {max_m:?} m with {width} × {height} texels is empty; max must be above min and there must be a texel"
     )]
@@ -120,7 +120,7 @@ pub enum ReferenceError {
         /// Length of `lights`.
         lights: usize,
     },
-    /// Skies are not counted.
+    /// Skies are not traced.
     #[error("the reference counts suns and point lights only; output.include_sky must be false")]
     IncludesSky,
     /// The list of meshes does not fit the list of objects.
@@ -131,7 +131,7 @@ pub enum ReferenceError {
         /// Length of the mesh list.
         meshes: usize,
     },
-    /// A figure of the scene is not finite or out of its range.
+    /// A value of the scene is not finite or out of range.
     #[error("{what} is {value}; {accepted}")]
     Figure {
         /// Which one.
@@ -152,7 +152,7 @@ pub enum ReferenceError {
         /// Length of `objects`.
         objects: usize,
     },
-    /// The caller said that nobody waits any more.
+    /// The caller cancelled.
     #[error("cancelled before the reference was good enough")]
     Cancelled,
     /// The settings make no sense.

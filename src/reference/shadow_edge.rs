@@ -1,22 +1,22 @@
-//! Which values lie at the edge of a mesh's shadow, in texels or pixels.
+//! Finds the values near the edge of a mesh's shadow, in texels or pixels.
 
 use super::truth::edge_of;
 use super::view::shadows;
 use super::{ReferenceError, Truth};
 use crate::scene::{Output, ResolvedScene};
 
-/// Pixels that are looked at between two questions whether to go on.
+/// Pixels that are processed between two calls of `go_on`.
 const PIXELS_AT_ONCE: usize = 16_384;
 
-/// Whether each value of a truth lies at most `reach` texels, of a view pixels (along x and y alike), from the edge of a shadow;
+/// Whether each value of a truth lies at most `reach` texels (for a view, pixels), along x and y alike, from the edge of a shadow;
 /// `None` when no mesh casts any.
 ///
-/// A view whose truth leaves pixels out is looked at again, at all pixels around those that are in it.
+/// If a view's truth skips pixels, all pixels around the truth's own are traced as well.
 ///
-/// `go_on` is asked now and then whether somebody still waits.
+/// `go_on` is called now and then; false cancels.
 ///
 /// # Errors
-/// What cannot be counted; [`ReferenceError::Cancelled`].
+/// Scenes that cannot be traced; [`ReferenceError::Cancelled`].
 pub fn shadow_edge(
     resolved: &ResolvedScene,
     truth: &Truth,
@@ -51,7 +51,7 @@ pub fn shadow_edge(
         .flat_map(|y| (0..width).map(move |x| [x, y]))
         .filter(|&pixel| near[place_of(pixel)])
         .collect();
-    // 2. Their shadow; where nothing is seen is no edge.
+    // 2. Their shadow. Pixels that show nothing have no edge.
     let mut shadow = vec![0.0; near.len()];
     for some in pixels.chunks(PIXELS_AT_ONCE) {
         if !go_on() {
@@ -62,7 +62,7 @@ pub fn shadow_edge(
             shadow[place_of(pixel)] = share.unwrap_or(0.0);
         }
     }
-    // 3. The edge, and of it what the truth has.
+    // 3. The edge, restricted to the pixels of the truth.
     let edge = edge_of(&shadow, &near, [width as usize, height as usize], reach);
     Ok(Some(
         middles.into_iter().map(|at| edge[place_of(at)]).collect(),

@@ -1,4 +1,4 @@
-//! The light of a lamp under water on a small square: straight, with the meshes in its way.
+//! The light of a lamp under water on a small square: straight rays, blocked by meshes.
 
 use glam::{DVec2, DVec3};
 
@@ -9,9 +9,9 @@ use super::rings::Rings;
 use super::slanted::{halves, rows};
 use super::window::{LightWindow, Target};
 
-/// Two independent estimates from about `points` rays each, and how many rays were counted.
+/// Two independent estimates from about `points` rays each, and the number of rays.
 ///
-/// The places that are looked at lie on the square, in rings around the lamp's foot on its plane; each brings
+/// The sampled places lie on the square, in rings around the lamp's foot on its plane; each brings
 /// I h/r³ e^(−c r), with h the lamp's height over the plane.
 pub(super) fn shine(
     place: &Place,
@@ -48,7 +48,7 @@ pub(super) fn shine(
             rays += row.count;
             for i in 0..row.count {
                 let (at, m2) = rings.place(row.start_m + lattice.step_m() * i as f64);
-                // The rings reach beyond the square.
+                // The rings extend beyond the square.
                 if !square.contains(at) {
                     continue;
                 }

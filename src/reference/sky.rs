@@ -1,10 +1,10 @@
-//! The skies of a scene, all together.
+//! The sum of all skies of a scene.
 
 use crate::physics::fresnel::diffuse_transmittance;
 use crate::physics::sky::{sky_irradiance, sky_path_factor};
 use crate::scene::{Light, Scene};
 
-/// Sky light in the air and, as if that were flat, under water.
+/// Sky light in the air and, as under flat water, below the surface.
 pub(super) struct Sky {
     /// Of all skies, W/(m² sr).
     radiance: [f64; 3],
@@ -43,7 +43,7 @@ impl Sky {
             .map(|radiance| sky_irradiance(radiance, 1.0, 0.0, 0.0, 1.0, normal_y, 1.0))
     }
 
-    /// The same `depth_m` under the water at rest.
+    /// Like the above, `depth_m` under the water at rest.
     pub(super) fn under_water_w_m2(&self, depth_m: f64, normal_y: f64) -> [f64; 3] {
         std::array::from_fn(|c| {
             sky_irradiance(

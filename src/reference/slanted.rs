@@ -7,7 +7,7 @@ use glam::{DMat2, DVec2, DVec3};
 use super::lattice::{Lattice, Row, SECOND_HALF, uniform};
 use super::window::LightWindow;
 
-/// Least area of a cell as a share of the texel's: light that only grazes a receiver under flat water may still strike it under
+/// Least area of a cell as a share of the texel's: light that only grazes a receiver under flat water may still hit it under
 /// waves, and needs no finer cells than elsewhere.
 const LEAST_AREA: f64 = 0.25;
 
@@ -64,7 +64,7 @@ impl Cells {
     }
 }
 
-/// Two independent lattices over the same cells: of different sizes, turned opposite ways, with shifts that follow from `key`.
+/// Two independent lattices over the same cells: of different sizes, turned in opposite directions, with shifts that follow from `key`.
 pub(super) fn halves(points_per_cell: f64, key: u64) -> [Lattice; 2] {
     let mut wanted = points_per_cell;
     [0, 1].map(|half| {

@@ -1,4 +1,4 @@
-//! How water is cut into pieces that rays are counted in: places (s, t) of which every unit gets the same number of rays.
+//! How water is divided into pieces for counting rays. It is parametrised by (s, t); every unit gets the same number of rays.
 
 use glam::{DVec2, DVec3};
 
@@ -8,18 +8,18 @@ use super::rings::Rings;
 use super::slanted::Cells;
 use super::window::LightWindow;
 
-/// The places.
+/// The parametrisation.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Strata {
-    /// Of a sun: shadows of the receiver's texels.
+    /// For a sun: shadows of the receiver's texels.
     Cells(Cells),
-    /// Of a point light above the water: rings around its foot.
+    /// For a point light above the water: rings around its foot.
     Rings(Rings),
 }
 
 impl Strata {
     /// For light on a square with edges `u_m` and `v_m` and a corner at `corner_m`, which a unit of (s, t) lights under flat water;
-    /// `None` of light that comes through no water.
+    /// `None` for light that does not pass through the surface.
     pub(super) fn of(
         place: &Place,
         light: &PlacedLight,
@@ -46,7 +46,7 @@ impl Strata {
         }
     }
 
-    /// The water at `st`, m, and the area that a unit of (s, t) is there, m².
+    /// The water at `st`, m, and the area of a unit of (s, t) there, m².
     pub(super) fn water_m(&self, st: DVec2) -> (DVec2, f64) {
         match self {
             Self::Cells(cells) => (cells.water_m(st), cells.area_m2()),
@@ -62,7 +62,7 @@ impl Strata {
         }
     }
 
-    /// A rectangle of (s, t) that holds `window` and is worth quartering: of cells a square.
+    /// A rectangle of (s, t) that holds `window` and suits quartering: for cells a square.
     pub(super) fn start_of_quartering(&self, window: &LightWindow) -> LightWindow {
         let whole = self.around(window);
         match self {

@@ -1,4 +1,4 @@
-//! What a batch of rays brought, term by term.
+//! Sums over a batch of rays, term by term.
 
 use super::floor::FloorMap;
 
@@ -8,21 +8,21 @@ use super::floor::FloorMap;
 pub(super) struct Tally<const K: usize> {
     /// Landed per texel.
     pub(super) texels: Vec<[f64; K]>,
-    /// Would have landed per texel, had no mesh stood in the way; empty when none can.
+    /// Blocked by a mesh, per texel where it would have landed; empty when no mesh can block.
     pub(super) shaded: Vec<[f64; K]>,
     /// Landed per object.
     pub(super) objects: Vec<[f64; K]>,
     /// Fell on the water.
     pub(super) emitted: f64,
-    /// Turned back at the surface.
+    /// Reflected at the surface.
     pub(super) reflected: f64,
-    /// Lost on the way through the water.
+    /// Absorbed or scattered in the water.
     pub(super) lost: [f64; K],
     /// Reached the floor's plane outside the map.
     pub(super) left: [f64; K],
-    /// Met nothing.
+    /// Reached nothing.
     pub(super) missed: f64,
-    /// How many rays.
+    /// The number of rays.
     pub(super) rays: u64,
 }
 

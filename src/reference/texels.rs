@@ -1,10 +1,10 @@
-//! Where the texels of the map on an object lie. That is part of what the output means, so every engine has to use the same; nothing
-//! of it is taken from the renderer.
+//! Where the texels of the map on an object lie. This is part of the output's definition, so the renderer and the reference must agree;
+//! the reference computes it independently.
 //!
-//! The map is a square seen along one axis: the way that light takes under flat water to the middle of what of the object lies
-//! under the water at rest. In the mesh's own space that direction is rounded to steps of 2⁻²⁰, u and v are two unit vectors
+//! The map is a square seen along one axis: the direction of the light under flat water towards the middle of the part of the object
+//! that lies under the water at rest. In the mesh's own space that direction is rounded to steps of 2⁻²⁰, u and v are two unit vectors
 //! across it, and the square is as wide as the larger side of the mesh's bounding box seen along the axis, with two texels to
-//! spare on each side. All of it is placed with the object, so that a texel may be a parallelogram.
+//! spare on each side. The object's placement transforms all of it, so a texel may be a parallelogram.
 
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4};
 
@@ -15,7 +15,7 @@ use crate::scene::{Object, ResolvedScene};
 
 /// Steps per unit that the axis is rounded to.
 const AXIS_STEPS: f64 = (1_u32 << 20) as f64;
-/// Least width of the square as a share of the largest coordinate: of a mesh that is a line along the axis.
+/// Least width of the square as a share of the largest coordinate, for a mesh that is a line along the axis.
 const LEAST_WIDTH: f64 = 1e-9;
 
 /// The texels, in local coordinates.
@@ -35,7 +35,7 @@ pub(super) struct TexelGrid {
 }
 
 impl TexelGrid {
-    /// Those of the object with this index in light from `source`; `None` of an object that no light under water can strike.
+    /// The texels of the object with this index in light from `source`; `None` for an object that no light under water can reach.
     pub(super) fn of(
         resolved: &ResolvedScene,
         index: usize,
@@ -71,7 +71,7 @@ impl TexelGrid {
         let width = (high - low).truncate().max_element().max(least) * n / (n - 4.0);
         let middle = (low + high) * 0.5;
         let per_unit = n / width;
-        // 2. Rows that take local points to u, v and the way along the axis.
+        // 2. Rows that take local points to u, v and the distance along the axis.
         let row = |across: DVec3, offset: f64| {
             let local = mesh_from_local.matrix3.transpose() * across;
             local.extend(offset + across.dot(mesh_from_local.translation))
@@ -101,7 +101,7 @@ impl TexelGrid {
         self.corner_m + self.edges_m[0] * uv.x + self.edges_m[1] * uv.y
     }
 
-    /// Number of the texel that a local point is seen in; `None` beside the map.
+    /// Index of the texel that shows a local point; `None` outside the map.
     pub(super) fn texel_at(&self, p_m: DVec3) -> Option<usize> {
         let [u, v] = self.rows.map(|row| row.dot(p_m.extend(1.0)));
         let side = f64::from(self.side);

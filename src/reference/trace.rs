@@ -1,4 +1,4 @@
-//! One lattice, all rays: rows in bands, what is under the water, and the rays of a sun.
+//! Traces all rays of one lattice: rows in bands, the receivers under the water, and the rays of a sun.
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -12,12 +12,12 @@ use super::window::LightWindow;
 use crate::physics::attenuation::transmission;
 use crate::waves::Surface;
 
-/// Most bands of rows; each has its own map until they are added up in order.
+/// The largest number of bands of rows. Each has its own map, and the maps are summed in order.
 const MOST_BANDS: usize = 64;
 /// Memory for the bands' maps, bytes.
 const BAND_BYTES: usize = 256 << 20;
 
-/// What is under the water, in local coordinates.
+/// Floor and meshes under the water, in local coordinates.
 #[derive(Clone, Copy)]
 pub(super) struct Ground<'a, const K: usize> {
     pub(super) map: &'a FloorMap,
@@ -27,8 +27,9 @@ pub(super) struct Ground<'a, const K: usize> {
 }
 
 impl<const K: usize> Ground<'_, K> {
-    /// Counts the rows of `lattice` in `window` with `row`, which hears whether rows are left out because nobody waits; the number of
-    /// bands and the order of their sum depend on the map only, so the bits do not depend on the threads.
+    /// Calls `count_row` for each row of `lattice` in `window`; `counted` gets the number of rays of each band. Once `cancelled` returns
+    /// true, the remaining rows are skipped. The number of bands and the order of their sum depend on the map only, so the bits do not
+    /// depend on the threads.
     pub(super) fn count_rows(
         &self,
         lattice: &Lattice,
@@ -68,7 +69,7 @@ impl<const K: usize> Ground<'_, K> {
         total
     }
 
-    /// Books a ray with flux `entered` that goes from `from_m` to the floor's plane at `to_m`, `path_m` away.
+    /// Counts a ray with flux `entered` that goes from `from_m` to the floor's plane at `to_m`, `path_m` away.
     #[inline]
     pub(super) fn land(
         &self,
@@ -95,10 +96,10 @@ impl<const K: usize> Ground<'_, K> {
         if let Some(hit) = hit {
             add_to(&mut tally.objects[hit.object], &arrived);
             if let Some(texel) = self.map.texel_at(to_m.x, to_m.z) {
-                let stopped = self
+                let blocked = self
                     .extinction_per_m
                     .map(|c| entered * transmission(c, path_m));
-                add_to(&mut tally.shaded[texel], &stopped);
+                add_to(&mut tally.shaded[texel], &blocked);
             }
         } else if let Some(texel) = self.map.texel_at(to_m.x, to_m.z) {
             add_to(&mut tally.texels[texel], &arrived);
@@ -108,7 +109,7 @@ impl<const K: usize> Ground<'_, K> {
     }
 }
 
-/// What all rays of a sun have in common, in local coordinates.
+/// Values that all rays of a sun share, in local coordinates.
 pub(super) struct Beam<'a, const K: usize> {
     pub(super) ground: Ground<'a, K>,
     pub(super) surface: &'a Surface,
@@ -118,8 +119,8 @@ pub(super) struct Beam<'a, const K: usize> {
 }
 
 impl<const K: usize> Beam<'_, K> {
-    /// Counts every ray of `lattice` in the window; `counted` hears how many rays were counted since it was last called. Once
-    /// `cancelled` says so, the rest is left out and the tally is of no use.
+    /// Counts every ray of `lattice` in the window; `counted` gets the number of rays since its last call. Once
+    /// `cancelled` returns true, the rest is skipped and the tally is unusable.
     pub(super) fn trace(
         &self,
         lattice: &Lattice,
@@ -149,7 +150,7 @@ impl<const K: usize> Beam<'_, K> {
             .count_rows(lattice, &self.window, counted, cancelled, &count_row)
     }
 
-    /// Books the first `count` rays of `block`.
+    /// Counts the first `count` rays of `block`.
     fn count(
         &self,
         start_m: DVec2,

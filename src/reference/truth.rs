@@ -1,4 +1,4 @@
-//! One entry for every kind of output: what the renderer should have answered.
+//! The entry point for all kinds of output: the correct result for a scene.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use super::sky::Sky;
 use super::{ReferenceError, TruthSettings, disk, map, object_map, view};
 use crate::scene::{Output, Receiver, ResolvedScene};
 
-/// Shares of shadow between which a value lies in the soft edge itself.
+/// Shares of shadow between which a value is inside the soft edge.
 const HALF_DARK: (f64, f64) = (0.02, 0.98);
 
 /// What the values of a [`Truth`] are.
@@ -23,7 +23,7 @@ pub enum TruthKind {
     View,
 }
 
-/// The truth about what `resolved.scene.output` asks for.
+/// The truth for the output that `resolved.scene.output` requests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
     /// What the values are.
@@ -32,21 +32,21 @@ pub struct Truth {
     pub width: u32,
     /// Values along y (of the floor: z).
     pub height: u32,
-    /// Of a view: the pixel of the first value; else (0, 0).
+    /// For a view: the pixel of the first value; otherwise (0, 0).
     pub first_pixel: [u32; 2],
-    /// Of a view: pixels from one value to the next along both axes; else 1.
+    /// For a view: pixels from one value to the next along both axes; otherwise 1.
     pub pixel_step: u32,
     /// Irradiance, W/m², row by row; 0 where `compared` is false.
     pub irradiance: Vec<[f64; 3]>,
-    /// Whether there is something to compare: false where a pixel sees nothing or a texel of an object's map has no surface.
+    /// Whether there is something to compare: false where a pixel shows nothing or a texel of an object's map has no surface.
     pub compared: Vec<bool>,
     /// Estimated relative L1 error of `irradiance`, from two independent halves.
     pub relative_error: f64,
     /// Rays counted, both halves and all suns.
     pub rays: u64,
-    /// Share of the light that would reach a value but is stopped by meshes, 0 … 1; `None` when there are none.
+    /// Share of the light to a value that meshes block, 0 … 1; `None` when there are no meshes.
     pub shadow: Option<Vec<f64>>,
-    /// What it took to compute, s.
+    /// Time to compute it, s.
     pub seconds: f64,
     /// Whether it was read from the disk.
     pub from_disk: bool,
@@ -54,8 +54,9 @@ pub struct Truth {
 
 impl Truth {
     /// Whether each value lies at most `reach` values (along x and y alike) from the edge of a shadow; `None` when no mesh casts
-    /// any. Of a view with a `pixel_step` those are many pixels: see [`shadow_edge`](super::shadow_edge). The edge runs between
-    /// neighbours on both sides of a share of one half, and where the share is neither 0 nor 1.
+    /// any. For a view with a `pixel_step` above 1, values are several pixels apart: see
+    /// [`shadow_edge`](super::shadow_edge). The edge runs between neighbours on both sides of a share of one half, and where the share is
+    /// neither 0 nor 1.
     pub fn shadow_edge(&self, reach: u32) -> Option<Vec<bool>> {
         let shadow = self.shadow.as_ref()?;
         let size = [self.width as usize, self.height as usize];
@@ -95,8 +96,8 @@ pub(super) fn edge_of(
     widen(&wide, reach, |at| (at / width, height), width)
 }
 
-/// True up to `reach` steps of `stride` around every true value; `place_of` tells where along the axis a value lies, and how
-/// long that is.
+/// True up to `reach` steps of `stride` around every true value; `place_of` returns a value's position along the axis and the
+/// axis's length.
 fn widen(
     values: &[bool],
     reach: usize,
@@ -114,16 +115,16 @@ fn widen(
         .collect()
 }
 
-/// Finds the truth, or reads it from `settings.disk`.
+/// Computes the truth, or reads it from `settings.disk`.
 ///
-/// It is what a renderer should answer for the same scene, found by counting plain rays in f64: texels of maps
-/// are means over the texel; a point of a view is the mean over its pixel's footprint. Dials have no say in it, except that
-/// `quality.level_map_texels` is the size of an object's map. The bits do not depend on the number of threads. `progress` hears
-/// the finished part, 0 … 1, from any thread; `cancelled` is asked often, from any thread.
+/// This is the correct result for the scene, found by counting plain rays in f64. A texel of a map holds the mean over the texel;
+/// a point of a view holds the mean over its pixel's footprint. Dials have no effect, except that
+/// `quality.level_map_texels` is the size of an object's map. The bits do not depend on the number of threads. `progress` is called
+/// with the finished part, 0 … 1, from any thread; `cancelled` is called often, from any thread.
 ///
 /// # Errors
 ///
-/// What cannot be counted, settings without sense, and [`ReferenceError::Cancelled`].
+/// Scenes that cannot be traced, invalid settings, and [`ReferenceError::Cancelled`].
 pub fn truth(
     resolved: &ResolvedScene,
     settings: &TruthSettings,
@@ -154,7 +155,7 @@ pub fn truth(
     if let Some(shelf) = kept
         && let Err(error) = shelf.write(&truth)
     {
-        // A truth that cannot be kept is as true; the next run has to find it again.
+        // A truth that cannot be stored is still valid; the next run has to compute it again.
         tracing::warn!(
             "the truth could not be kept in {}: {error}",
             shelf.file().display()
@@ -163,7 +164,7 @@ pub fn truth(
     Ok(truth)
 }
 
-/// The map on the floor: counted suns, and the skies as under flat water.
+/// The map on the floor: lights by rays, and the skies as under flat water.
 fn floor(
     resolved: &ResolvedScene,
     settings: &TruthSettings,

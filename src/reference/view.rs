@@ -17,12 +17,12 @@ use crate::scene::{Output, ResolvedScene};
 
 /// Rays per footprint of evenly lit water in the first round, each half.
 const FIRST_POINTS: f64 = 64.0;
-/// The same where only the share of shadow is asked for: in full light and in full shadow one ray tells as much as many.
+/// Like the above, where only the share of shadow is requested: in full light and in full shadow one ray is as good as many.
 const SHADOW_POINTS: f64 = 16.0;
-/// Nearer than this a surface does not shade itself in the air, m.
+/// Distance within which a surface in the air does not shade itself, m.
 const OWN_M: f64 = 1e-7;
 
-/// Which pixels are looked at: every `step`th from `first` on, `size` of them along x and y.
+/// Which pixels are sampled: every `step`th from `first` on, `size` of them along x and y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PixelGrid {
     first: [u32; 2],
@@ -55,17 +55,17 @@ impl PixelGrid {
     }
 }
 
-/// A point and the light on it that needs no counting.
+/// A point and the light on it that is known without tracing rays.
 struct Lit {
     point: ViewPoint,
     patch: Patch,
-    /// Skies, and in the air all lights, W/m².
+    /// From skies and, in the air, from all lights, W/m².
     known: [f64; 3],
-    /// Of a dry point: what the meshes hold back.
-    stopped: [f64; 3],
+    /// At a dry point: light that meshes block.
+    blocked: [f64; 3],
 }
 
-/// One round: per point two halves, and the rays counted.
+/// One round: two halves per point, and the number of rays.
 type Counted = ([Landed; 2], u64);
 
 /// The truth at the points that the camera of `resolved` sees.
@@ -88,7 +88,7 @@ pub(super) fn view(
     let mut viewer = Viewer::of(&place, &picture);
     let mut points = Vec::new();
     for pixel in grid.pixels() {
-        points.push(viewer.look(pixel).map(|point| lit(&place, point)));
+        points.push(viewer.point(pixel).map(|point| lit(&place, point)));
         if cancelled() {
             return Err(ReferenceError::Cancelled);
         }
@@ -117,7 +117,7 @@ pub(super) fn view(
     })
 }
 
-/// Share of shadow, 0 … 1, at some pixels; `None` where one sees nothing.
+/// Share of shadow, 0 … 1, at some pixels; `None` where a pixel shows nothing.
 pub(super) fn shadows(
     resolved: &ResolvedScene,
     pixels: &[[u32; 2]],
@@ -129,7 +129,7 @@ pub(super) fn shadows(
         .par_iter()
         .map_init(
             || viewer.clone(),
-            |viewer, &pixel| viewer.look(pixel).map(|point| lit(&place, point)),
+            |viewer, &pixel| viewer.point(pixel).map(|point| lit(&place, point)),
         )
         .collect();
     let counted = round(&place, &points, SHADOW_POINTS, &|| false, &|_| {});
@@ -140,31 +140,31 @@ pub(super) fn shadows(
         .collect())
 }
 
-/// Share of the light of lights on a point that meshes hold back.
+/// Share of the light of suns and point lights on a point that meshes block.
 fn shadow(place: &Place, lit: &Lit, (halves, _): &Counted) -> f64 {
     if lit.point.dry {
-        // The known light of a dry point has skies in it; what the others bring alone is asked for again.
+        // The known light of a dry point includes skies, so the light of the other lights alone is computed again.
         let open = lights_in_air(place, &lit.point).lit;
-        return share(lit.stopped.iter().sum(), open.iter().sum());
+        return share(lit.blocked.iter().sum(), open.iter().sum());
     }
     let mut both = halves[0];
     both.add(&halves[1]);
-    share(both.stopped.iter().sum(), both.lit.iter().sum())
+    share(both.blocked.iter().sum(), both.lit.iter().sum())
 }
 
 fn lit(place: &Place, point: ViewPoint) -> Lit {
     let mut known = place.sky_w_m2(point.position_m, point.normal, point.dry);
-    let mut stopped = [0.0; 3];
+    let mut blocked = [0.0; 3];
     if point.dry {
         let lights = lights_in_air(place, &point);
-        stopped = lights.stopped;
+        blocked = lights.blocked;
         add_to(&mut known, &lights.lit);
     }
     Lit {
         point,
         patch: Patch::new(point.position_m, point.normal, point.side_m, point.object),
         known,
-        stopped,
+        blocked,
     }
 }
 
@@ -193,7 +193,7 @@ fn lights_in_air(place: &Place, point: &ViewPoint) -> Landed {
             .occluders
             .first_seen(from_m, to_light, until_m, &mut stack);
         let target = if blocker.is_some() {
-            &mut sum.stopped
+            &mut sum.blocked
         } else {
             &mut sum.lit
         };
@@ -203,7 +203,7 @@ fn lights_in_air(place: &Place, point: &ViewPoint) -> Landed {
     sum
 }
 
-/// Counts all points with ever more rays until they are good enough.
+/// Traces all points with an increasing number of rays until the error is small enough.
 fn rounds(
     place: &Place,
     points: &[Option<Lit>],
@@ -308,7 +308,7 @@ fn count_point(place: &Place, patch: &Patch, per_patch: f64, index: usize) -> Co
     sum
 }
 
-/// Irradiance per point, half by half; 0 where nothing is seen.
+/// Irradiance per point of each half; 0 where the pixel shows nothing.
 fn irradiance_halves(points: &[Option<Lit>], counted: &[Counted]) -> [Vec<[f64; 3]>; 2] {
     [0, 1].map(|half: usize| {
         points

@@ -1,4 +1,4 @@
-//! The piece of water that can light a map.
+//! The window: the rectangle of water that can light a map.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -7,9 +7,9 @@ use glam::{DVec2, DVec3};
 use crate::physics::refraction::{direction_to_light, normal_from_slope, refract_direction};
 use crate::waves::Surface;
 
-/// Directions in which the rim of the slopes is looked at.
+/// Directions that are sampled on the boundary of the possible slopes.
 const RIM_DIRECTIONS: u32 = 64;
-/// Shares of the rim slopes that are looked at.
+/// Shares of the steepest slope that are sampled.
 const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Part of the window's size added on each side.
 const MARGIN: f64 = 0.02;
@@ -26,7 +26,7 @@ pub struct LightWindow {
 }
 
 impl LightWindow {
-    /// No water.
+    /// The empty window.
     pub(super) fn empty() -> Self {
         Self {
             min_m: DVec2::INFINITY,
@@ -70,7 +70,7 @@ pub fn light_window(
     window_of(surface, to_light, ior, &[floor])
 }
 
-/// The water whose light can reach any of `targets`; those wholly above the crests are left out.
+/// The water whose light can reach any of `targets`; targets entirely above the crests are ignored.
 pub(super) fn window_of(
     surface: &Surface,
     to_light: DVec3,
@@ -98,21 +98,21 @@ pub(super) fn window_of(
     }
 }
 
-/// Angles of incidence at which a point light's refraction is looked at, and directions they come from.
+/// Angles of incidence at which a point light's refraction is sampled, and directions of the light.
 const INCIDENCES: u32 = 32;
 const AZIMUTHS: u32 = 16;
 
 /// How far the waves turn the rays of a point light above them, metres sideways per metre down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LampDrift {
-    /// Most that a ray is turned aside from its way under flat water.
+    /// Largest deviation of a ray from its path under flat water.
     aside: f64,
-    /// Most that a ray goes sideways at all.
+    /// Largest sideways distance of a ray.
     farthest: f64,
 }
 
 impl LampDrift {
-    /// Over all incidences, those from below the horizon too: the flank of a wave can face a light that is lower.
+    /// Over all incidences, also from below the horizon: the flank of a wave can face a light that is lower.
     pub(super) fn of(surface: &Surface, ior: f64) -> Self {
         let mut drift = Self {
             aside: 0.0,
@@ -143,8 +143,8 @@ impl LampDrift {
 
     /// The water whose light from `position_m`, above it, can reach any of `targets`, under crests of `crest_m`.
     ///
-    /// Under flat water every ray goes on away from the point under the light, so that what lands in a target has entered between the
-    /// two; waves turn it aside by at most as much as they do at any incidence.
+    /// Under flat water every ray continues away from the point under the light, so light that lands in a target entered between the
+    /// two. Waves deflect it by at most the largest deviation over all incidences.
     pub(super) fn window(
         &self,
         crest_m: f64,
@@ -175,7 +175,7 @@ impl LampDrift {
     }
 }
 
-/// Metres sideways (x, z) per metre down of the refracted light, for slopes all over what the surface can have.
+/// Metres sideways (x, z) per metre down of the refracted light, for a sample of all slopes that the surface can have.
 fn offsets_per_depth(surface: &Surface, to_light: DVec3, ior: f64) -> Vec<DVec2> {
     let rim = surface.rim_slopes(RIM_DIRECTIONS);
     let mut slopes = vec![DVec2::ZERO];

@@ -57,12 +57,12 @@ impl Renderer {
         let reason = if choice.meets {
             format!(
                 "{} trial renders: the fewest cells that are predicted to stay under {target}",
-                choice.looks
+                choice.probes
             )
         } else {
             format!(
                 "{} trial renders: no number of cells is certain to stay under {target}; these are predicted to come nearest",
-                choice.looks
+                choice.probes
             )
         };
         self.dials(
@@ -89,7 +89,7 @@ impl Renderer {
         let error = probed.unwrap_or(0.0);
         let is_view = resolved.scene.output.is_view();
         let margin = choose::margin(self.calibration.error_margin, is_view);
-        let predicted = choose::foretold(error * margin, probe_cells, cells, is_view);
+        let predicted = choose::extrapolated(error * margin, probe_cells, cells, is_view);
         let reason = if meets {
             format!("the most cells that are predicted to take at most {budget_ms} ms")
         } else {

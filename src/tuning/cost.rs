@@ -1,4 +1,4 @@
-//! What a plan will take: each pass costs something to start and something per unit of its work.
+//! Predicts the time of a plan: each pass has a cost per run and a cost per unit of its work.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::facts::SceneFacts;
 use crate::graph::plan::Phase;
 use crate::plan::FramePlan;
 
-/// What a plan will take with warm pipelines, ms. Passes without a rate count nothing.
+/// The time of a plan with compiled pipelines, ms. Passes without a rate count as 0.
 pub fn predicted_ms(
     plan: &FramePlan,
     facts: &SceneFacts,
@@ -30,9 +30,9 @@ pub fn predicted_ms(
     frame_ms + passes
 }
 
-/// The rate that comes nearest to some measured (work, ms of one run) in relative terms; both parts 0 or more.
+/// The rate that fits measured pairs (work, ms of one run) best in relative terms. Both parts are 0 or more.
 pub fn fit_rate(measured: &[(f64, f64)]) -> PassRate {
-    // Least squares of (start + unit·work)/ms − 1: every measurement counts alike, small or large.
+    // Least squares of (start + unit·work)/ms − 1: small and large measurements have the same weight.
     let (mut a, mut b, mut c, mut d, mut e) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for &(work, ms) in measured.iter().filter(|(_, ms)| *ms > 0.0) {
         let (x, y) = (1.0 / ms, work / ms);

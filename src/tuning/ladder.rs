@@ -1,5 +1,5 @@
-//! The dials as one family: a number of water cells, and what the other dials have to be so that none of them spoils what the cells
-//! give or costs more than it brings.
+//! Combinations of dials (rungs): for each number of water cells, values of the other dials that neither spoil the accuracy of the
+//! cells nor cost more than they gain.
 
 use crate::scene::{Output, Quality, Receiver};
 
@@ -8,17 +8,17 @@ pub const FEWEST_CELLS: u32 = 16;
 /// Most water cells of a rung.
 pub const MOST_CELLS: u32 = 2048;
 
-/// Fewest texels of level maps of meshes that only cast shadows: their edges are found on the triangles themselves, but what is thinner
+/// Fewest texels of level maps of meshes that only cast shadows. Shadow edges are found on the triangles themselves, but parts thinner
 /// than a texel may be missed.
 const SHADOW_TEXELS: u32 = 128;
 
-/// The dials with `cells` water cells; those that are no matter of accuracy of the light stay as they are, and so does the size of a
-/// map that was asked for.
+/// The dials with `cells` water cells. Dials that do not affect the accuracy of the light stay as they are, and so does the size of a
+/// requested map.
 ///
-/// A beam's error falls with the square of the cells and an unresolved piece's with its size, so very many cells ask for more halvings; each
-/// costs as much as all before it. In a scene of many meshes 295 cells with one were nearer than 256 with two (0.67 % and 0.71 %) in
-/// less time (169 and 229 ms; docs/accuracy.md, `reef`). A camera looks between the texels of the floor's map, which therefore has
-/// some more than there are cells.
+/// A beam's error falls with the square of the cells; the error of an unresolved piece falls only with its size. So a large number of
+/// cells needs more split levels, each of which costs as much as all before it. In a scene of many meshes 295 cells with one level
+/// had a smaller error than 256 with two (0.67 % and 0.71 %) in less time (169 and 229 ms; docs/accuracy.md, `reef`). A camera
+/// interpolates between the texels of the floor's map, so the map has more texels than there are cells.
 pub fn rung(given: &Quality, output: &Output, cells: u32) -> Quality {
     let cells = cells.clamp(FEWEST_CELLS, MOST_CELLS);
     Quality {

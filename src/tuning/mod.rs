@@ -1,12 +1,12 @@
-//! From a wanted error or time to dials.
+//! Chooses dials for a target error or a time budget.
 //!
-//! - `ladder`: the dials as one family, each rung in balance;
-//! - `choose`: which rung a wanted error needs, from looks at its light;
-//! - `cost`: what a plan will take, pass by pass;
+//! - `ladder`: combinations of dials, one per number of water cells, in which no dial wastes what the others achieve;
+//! - `choose`: which rung meets a target error, from trial renders (probes) of the light;
+//! - `cost`: the predicted time of a plan, pass by pass.
 //!
-//! Both rest on the figures of a [calibration](crate::calibration).
+//! Predictions are based on a [calibration](crate::calibration).
 //!
-//! Nothing here touches a GPU: looking at a scene and measuring are handed in.
+//! Nothing here uses a GPU: callers pass in closures that render probes and predict times.
 
 pub mod choose;
 pub mod cost;
@@ -14,7 +14,7 @@ pub mod ladder;
 
 use crate::scene::Quality;
 
-/// Whether dials are chosen for what `quality` asks.
+/// Whether `quality` requests that dials are chosen.
 pub fn chooses_dials(quality: &Quality) -> bool {
     quality.target_error.is_some() || quality.time_budget_ms.is_some()
 }

@@ -262,7 +262,7 @@ fn conclusions_follow_from_the_figures() {
     assert!(exact.contains("falls to 0"), "{exact}");
     let words = said(&[(json!("a"), 0.01, 1.0), (json!("b"), 0.005, 4.0)], 0.0);
     assert!(
-        words.contains("The fastest is a (1 %, 1 ms), the nearest to the truth b (0.5 %, 4 ms): from the one to the other the error falls 2× and the time grows 4×."),
+        words.contains("The fastest is a (1 %, 1 ms), the nearest to the truth b (0.5 %, 4 ms): from the first to the second the error falls 2× and the time grows 4×."),
         "{words}"
     );
     let best = said(&[(json!("a"), 0.01, 4.0), (json!("b"), 0.005, 1.0)], 0.0);
@@ -282,7 +282,7 @@ fn conclusions_follow_from_the_figures() {
     fit_orders(&mut study);
     let halved = conclusions(&study, &study.sweeps[0]).join(" ");
     assert!(
-        halved.contains("Each level more divides the error by 3.") && !halved.contains("Order"),
+        halved.contains("Each further level divides the error by 3.") && !halved.contains("Order"),
         "{halved}"
     );
     let report = to_markdown(&study, &ReportLinks::default());

@@ -309,16 +309,16 @@ fn a_plan_reads_well() {
         predicted_error: 0.0198,
         predicted_ms: 9.2,
         meets: true,
-        reason: "2 looks".to_owned(),
+        reason: "2 trial renders".to_owned(),
     });
     let chosen = "Chosen dials\n  water_cells       113\n  map_texels        169\n  level_map_texels  128\n  \
-                  split_levels      2\n  predicted         error 1.98 %, 9 ms\n  reason            2 looks\n\nPasses\n";
+                  split_levels      2\n  predicted         error 1.98 %, 9 ms\n  reason            2 trial renders\n\nPasses\n";
     let text = plan::in_words(&plan);
     assert!(text.starts_with(chosen), "{text}");
     let text = plan.to_string();
     let chosen = "chosen dials\n  water_cells: 113\n";
     assert!(
-        text.starts_with(chosen) && text.contains("1.98e-2 and 9 ms predicted: 2 looks"),
+        text.starts_with(chosen) && text.contains("1.98e-2 and 9 ms predicted: 2 trial renders"),
         "{text}"
     );
 }

@@ -1,9 +1,9 @@
-//! The thesis's experiment without an adapter: accepted requests, and the files of results.
+//! The thesis's experiment without an adapter: what may be asked for, and the files made of what was found.
 
 use caustica::cli::experiment::{meshes, planes};
 use caustica::lab::experiment::{
-    Experiment, HitPoint, MeshResult, PlanePoint, Way, WayFigures, plots, scene, to_csv,
-    to_markdown,
+    Experiment, HitPoint, MeshResult, PlanePoint, Technique, TechniqueFigures, plots, scene,
+    to_csv, to_markdown,
 };
 use caustica::lab::shapes;
 use caustica::lab::study::study::SpreadMs;
@@ -33,34 +33,34 @@ fn shapes_are_named_or_all() {
 }
 
 #[test]
-fn methods_of_placing_differ_in_nothing_else() {
+fn techniques_differ_only_in_the_method() {
     let base = scene("box", 32, 64).unwrap();
-    let quality = |way: Way| way.of(&base).scene.quality;
-    let uniform = quality(Way::Uniform(9));
+    let quality = |technique: Technique| technique.of(&base).scene.quality;
+    let uniform = quality(Technique::Uniform(9));
     let method = |quality: &Quality| json!(quality.method);
     assert_eq!(method(&uniform), json!({ "kind": "planes", "planes": 9 }));
     assert_eq!(
-        method(&quality(Way::Smart(9))),
+        method(&quality(Technique::Smart(9))),
         json!({ "kind": "planes", "planes": 9, "slicing": "smart" })
     );
-    let slices = quality(Way::Volumetric(9));
+    let slices = quality(Technique::Volumetric(9));
     assert_eq!(
         method(&slices),
         json!({ "kind": "volumetric", "planes": 9 })
     );
-    assert_eq!(quality(Way::Hit), base.scene.quality);
-    for way in [slices, quality(Way::Smart(9))] {
+    assert_eq!(quality(Technique::Hit), base.scene.quality);
+    for technique in [slices, quality(Technique::Smart(9))] {
         let same = Quality {
             method: uniform.method.clone(),
-            ..way
+            ..technique
         };
         assert_eq!(same, uniform);
     }
     assert!(scene("unicorn", 32, 64).is_err());
 }
 
-fn figures(ms: f64, error: f64) -> WayFigures {
-    WayFigures {
+fn figures(ms: f64, error: f64) -> TechniqueFigures {
+    TechniqueFigures {
         ms: SpreadMs {
             median: ms,
             min: 0.9 * ms,
@@ -135,7 +135,7 @@ fn the_page_sets_our_ratios_beside_the_thesis() {
     assert!(text.contains("6 of 6 settings"));
     // Hits take 20 ms for 1 %: 3 planes take less time, and no error is below 2 %.
     assert!(text.contains("In 12 of 18 settings"), "{text}");
-    assert!(text.contains("Not so: sphere with 3 planes, volumetric; sphere with 3 planes, uniform; sphere with 3 planes, smart; boulder"));
+    assert!(text.contains("Exceptions: sphere with 3 planes, volumetric; sphere with 3 planes, uniform; sphere with 3 planes, smart; boulder"));
     assert!(
         text.contains("| sphere | 3 to 101 | 0 |  | 0 |  |"),
         "{text}"
@@ -143,7 +143,7 @@ fn the_page_sets_our_ratios_beside_the_thesis() {
 }
 
 #[test]
-fn the_table_has_a_row_for_each_method() {
+fn the_table_has_a_row_for_each_technique() {
     let text = to_csv(&found());
     let mut lines = text.lines();
     let columns = lines.next().unwrap().split(',').count();

@@ -1,7 +1,7 @@
 //! The thesis's experiment on a small scale, from scene to files.
 
 use caustica::config::RenderConfig;
-use caustica::lab::experiment::{self, Settings, WayFigures};
+use caustica::lab::experiment::{self, Settings, TechniqueFigures};
 use caustica::reference::{TruthSettings, truth};
 
 use super::harness::{new_renderer, try_render};
@@ -51,7 +51,7 @@ fn the_thesis_repeated_on_a_small_scale() {
     // Memory of slices grows with the planes by an image each, that of level maps by two words each.
     let (few, many) = (&mesh.planes[0], &mesh.planes[2]);
     let images = u64::from(many.planes - few.planes) * 4 * 32 * 32;
-    let grown = |few: &WayFigures, many: &WayFigures| {
+    let grown = |few: &TechniqueFigures, many: &TechniqueFigures| {
         let by_allocator = many.allocated_bytes.unwrap() - few.allocated_bytes.unwrap();
         let by_account = many.peak_bytes - few.peak_bytes;
         println!("{by_allocator} bytes more by the allocator, {by_account} by our account");

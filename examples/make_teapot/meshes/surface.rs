@@ -22,7 +22,7 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
-    /// A corner: welded to whatever is at the same place, with the normal that is there if it points the same way.
+    /// A corner: welded to whatever is at the same place, with the normal that is there if it points in the same direction.
     pub(crate) fn corner(&mut self, position_m: DVec3, normal: DVec3) -> (usize, usize) {
         let text = triple(position_m, POSITION_DECIMALS);
         let place = *self.place_of.entry(text).or_insert_with_key(|text| {
@@ -70,7 +70,7 @@ impl Surface {
     }
 }
 
-/// Three numbers with so many decimals, without negative zeros.
+/// Three numbers with the given number of decimals, without negative zeros.
 pub(crate) fn triple(p: DVec3, decimals: usize) -> String {
     let number = |x: f64| {
         let text = format!("{x:.decimals$}");

@@ -1,8 +1,8 @@
-//! The experiment as a table for programs: a row for each shape, way and setting.
+//! The experiment as a table for programs: a row for each shape, technique and setting.
 
 use std::fmt::Write as _;
 
-use super::study::{Experiment, WayFigures};
+use super::study::{Experiment, TechniqueFigures};
 
 /// CSV with a header; what was not measured is empty.
 pub fn to_csv(experiment: &Experiment) -> String {
@@ -10,15 +10,15 @@ pub fn to_csv(experiment: &Experiment) -> String {
         allocated_bytes,relative_l1,luv_to_uniform,texels_apart\n"
         .to_owned();
     for mesh in &experiment.meshes {
-        let mut row = |way: &str,
+        let mut row = |technique: &str,
                        planes: [String; 3],
                        cells: [String; 2],
-                       f: &WayFigures,
+                       f: &TechniqueFigures,
                        to_uniform: [String; 2]| {
             let optional = |value: Option<String>| value.unwrap_or_default();
             let _ = writeln!(
                 text,
-                "{},{},{way},{},{},{},{},{},{},{},{},{},{},{}",
+                "{},{},{technique},{},{},{},{},{},{},{},{},{},{},{}",
                 mesh.name,
                 mesh.triangles,
                 planes.join(","),

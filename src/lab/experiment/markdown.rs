@@ -1,13 +1,13 @@
-//! The experiment as a page: the thesis's tables in our numbers.
+//! The experiment as a page: the thesis's tables with our measurements.
 
 use std::fmt::Write as _;
 
 use super::paper::{self, MODELS};
-use super::study::{Experiment, MeshResult, PlanePoint, WayFigures};
+use super::study::{Experiment, MeshResult, PlanePoint, TechniqueFigures};
 use super::write::{FEATURED, error_file, time_file};
 use crate::lab::study::words::{mib, ms, percent, significant};
 
-/// The page; `folder` is where the plots lie, relative to it, with `/` at its end, or empty.
+/// The page; `folder` is the folder of the plots relative to the page, with `/` at its end, or empty.
 pub fn to_markdown(experiment: &Experiment, folder: &str) -> String {
     let mut text = String::new();
     head(&mut text, experiment);
@@ -27,15 +27,16 @@ fn head(text: &mut String, e: &Experiment) {
     let _ = write!(
         text,
         "# Level maps: planes, slices and hits\n\n\
-        The experiments of W. Tipprasert's thesis (2006, ch. 5) done again: light is placed on a mesh by slice images (method \
-        `volumetric`), by reference planes on a level map (method `planes`, slicing `uniform` and `smart`), and by where rays hit \
-        (method `level_map`, the default).\n\n\
-        On {} ({}), {} cores; {}² water cells, {}² texels, median of {} interleaved runs; times are the GPU's, of whole frames \
+        This page repeats the experiments of W. Tipprasert's thesis (2006, ch. 5). Light is placed on a mesh by slice images \
+        (method `volumetric`), by reference planes on a level map (method `planes`, slicing `uniform` and `smart`), and at the \
+        points where rays hit (method `level_map`, the default).\n\n\
+        On {} ({}), {} cores; {}² water cells, {}² texels, median of {} interleaved runs; times are GPU times of whole frames \
         with level maps cached. Errors are relative L1 of the map on the mesh against the float64 reference.\n\n\
-        The thesis ran on a GeForce 6800 with all beams on every plane; ours are culled against the mesh's map for all three ways \
-        alike, deposit exact coverage, and take no test per pixel of a rasteriser. Ratios compare, milliseconds do not. In the \
-        thesis's table 5-1 the volumetric times of teapot and sphere agree to the last digit in every row, so one of the two \
-        columns is a copy.\n",
+        The thesis used a GeForce 6800 and tested all beams on every plane. Our three techniques all cull beams against the \
+        mesh's map, deposit by exact coverage, and need no test per pixel of a rasteriser. Ratios can be compared, milliseconds \
+        cannot. In the \
+        thesis's table 5-1 the volumetric times of teapot and sphere are equal to the last digit in every row, so one of the \
+        two columns is a copy.\n",
         e.adapter.name, e.adapter.driver, e.cores, e.water_cells, e.texels, e.runs
     );
 }
@@ -199,7 +200,7 @@ fn summary(text: &mut String, e: &Experiment) {
     budgets(text, e);
 }
 
-/// The middle one, or the mean of the two in the middle.
+/// The median: the middle value, or the mean of the two middle values.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let (low, high) = (values.len().saturating_sub(1) / 2, values.len() / 2);
@@ -209,7 +210,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     }
 }
 
-/// Our ratios and distances over all shapes, and why they are not the thesis's.
+/// Our ratios and distances over all shapes, and why they differ from the thesis's.
 fn differences(text: &mut String, e: &Experiment, most: u32) {
     let points = || e.meshes.iter().flat_map(|m| &m.planes);
     let equal = points().filter(|p| p.luv_smart == 0.0).count();
@@ -224,16 +225,19 @@ fn differences(text: &mut String, e: &Experiment, most: u32) {
     let mean = |of: fn(&PlanePoint) -> f64| points().map(of).sum::<f64>() / (all as f64).max(1.0);
     let _ = write!(
         text,
-        "\nThe middle shape has volumetric ÷ uniform {} at about 50 planes and {} at {most}; the thesis has 2.8 and 2.7. Ours is what \
-        level maps save: a beam is tried only with planes near what the map holds under it, while slices, drawn anew, take every beam on \
-        every plane. Where a surface is steep or rough all over more planes are near each beam, and the ratio is less. Were each beam tried with \
-        each plane, as in the thesis, the two ways would cost nearly the same here, as a look at the map costs about what a slice's texel costs.\n\n\
-        It has smart ÷ uniform {} at {most} planes, with {} of the planes in use. Smart slicing goes by the planes in use, a little less \
-        here than in the thesis: what it leaves out are planes that our uniform slicing only looks at and passes by. Our dolphin is another \
-        model in another pose than the thesis's (0.98), and has a surface near fewer planes; teapot (0.64) and sphere (0.52) are alike.\n\n\
+        "\nThe median over the shapes of volumetric ÷ uniform is {} at about 50 planes and {} at {most}; the thesis has 2.8 and 2.7. Our \
+        ratio shows what level maps save: a beam is tested only with planes near the surface that the map holds under it, while \
+        slices, which are drawn again for every frame, take every beam on every plane. Where a surface is steep or rough \
+        everywhere, more planes are near each beam, and the ratio is smaller. If each beam were tested with each plane, as in \
+        the thesis, the two techniques would cost nearly the same here, because reading the map costs about as much as reading a \
+        slice's texel.\n\n\
+        The median of smart ÷ uniform is {} at {most} planes, with {} of the planes in use. The time of smart slicing depends on the \
+        number of planes in use. It saves a little less here than in the thesis, because the planes that it omits are cheap in \
+        our uniform slicing too, which rejects them early. Our dolphin is another model in another pose than the thesis's \
+        (0.98), and has a surface near fewer planes; teapot (0.64) and sphere (0.52) agree.\n\n\
         Smart slicing gives the picture of uniform slicing in {equal} of {all} settings; the mean CIE Luv distance over all is {}. Volumetric \
-        differs where a texel's depth lies on the border of two slices to the last bits, as clipping a triangle there moves the depth \
-        that the rasteriser finds; its mean distance is {}.\n",
+        differs where a texel's depth is on the border of two slices to the last bits, because clipping a triangle there changes \
+        the rasterised depth; its mean distance is {}.\n",
         significant(over(50, volumetric), 3),
         significant(over(most, volumetric), 3),
         significant(over(most, smart), 3),
@@ -243,7 +247,7 @@ fn differences(text: &mut String, e: &Experiment, most: u32) {
     );
 }
 
-/// Whether hits beat planes in whatever time there is.
+/// In how many settings hits are more accurate than planes in the same time.
 fn budgets(text: &mut String, e: &Experiment) {
     let mut settings = 0;
     let mut beaten = 0;
@@ -257,7 +261,7 @@ fn budgets(text: &mut String, e: &Experiment) {
                 ("smart", p, p.smart),
             ]
         });
-        for (way, p, figures) in points {
+        for (technique, p, figures) in points {
             let Some(error) = figures.error else { continue };
             settings += 1;
             let in_time = mesh
@@ -271,7 +275,10 @@ fn budgets(text: &mut String, e: &Experiment) {
                 beaten += 1;
                 gains.push(error / best);
             } else {
-                not_beaten.push(format!("{} with {} planes, {way}", mesh.name, p.planes));
+                not_beaten.push(format!(
+                    "{} with {} planes, {technique}",
+                    mesh.name, p.planes
+                ));
             }
         }
     }
@@ -280,14 +287,14 @@ fn budgets(text: &mut String, e: &Experiment) {
     }
     let _ = write!(
         text,
-        "\n## Error in a given time\n\nIn {beaten} of {settings} settings of planes and slices, placement by hits with some number of water \
-        cells takes no longer and is nearer to the reference: in the middle {} times nearer. The plots of error against time above show by how much.",
+        "\n## Error in a given time\n\nIn {beaten} of {settings} settings of planes and slices, placement by hits with some \
+        number of water cells takes no longer and is nearer to the reference: in the median {} times nearer. The plots of error against time above show by how much.",
         significant(median(gains), 3),
     );
     if not_beaten.is_empty() {
         text.push('\n');
     } else {
-        let _ = writeln!(text, " Not so: {}.", not_beaten.join("; "));
+        let _ = writeln!(text, " Exceptions: {}.", not_beaten.join("; "));
     }
 }
 
@@ -295,11 +302,12 @@ fn memory(text: &mut String, e: &Experiment) {
     let m = e.memory;
     let _ = write!(
         text,
-        "\n## Memory\n\nThe example of §5.1: 100 objects of 512² texels and 100 planes. In the thesis 100 MB of level maps (two \
-        textures of 16 bits) stand against 5000 MB of slices, a factor of 50. Here level maps with front and back pyramids and normals \
-        take {} MiB; slice images of four bytes a texel would take {} MiB if those of all objects were kept as there, a factor of {}. \
-        This program keeps the slices of one object at a time. Planes cost level maps two words each.\n\n\
-        What more planes take, in the figures of our own account and in those of the allocator:\n\n\
+        "\n## Memory\n\nThe example of §5.1: 100 objects of 512² texels and 100 planes. The thesis compares 100 MB of level \
+        maps (two textures of 16 bits) with 5000 MB of slices, a factor of 50. Here level maps with front and back pyramids and normals \
+        take {} MiB; slice images of four bytes a texel would take {} MiB if those of all objects were kept as in the thesis, a \
+        factor of {}. \
+        This program keeps the slices of one object at a time. A plane costs two words in addition to a level map.\n\n\
+        Additional memory for more planes, by our own account and by the allocator:\n\n\
         | shape | planes | volumetric, bytes more | by the allocator | level map, bytes more | by the allocator |\n\
         |---|---:|---:|---:|---:|---:|\n",
         mib(m.level_maps_bytes),
@@ -317,7 +325,7 @@ fn memory(text: &mut String, e: &Experiment) {
             continue;
         };
         let more = |few: u64, many: u64| (i128::from(many) - i128::from(few)).to_string();
-        let allocated = |few: &WayFigures, many: &WayFigures| {
+        let allocated = |few: &TechniqueFigures, many: &TechniqueFigures| {
             let both = few.allocated_bytes.zip(many.allocated_bytes);
             both.map_or_else(String::new, |(few, many)| more(few, many))
         };

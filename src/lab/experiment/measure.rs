@@ -1,7 +1,7 @@
-//! Renders a shape each way and measures time, memory and error.
+//! Renders a shape with each technique and measures time, memory and error.
 
-use super::scene::{Way, scene};
-use super::study::{Experiment, HitPoint, MemoryExample, MeshResult, PlanePoint, WayFigures};
+use super::scene::{Technique, scene};
+use super::study::{Experiment, HitPoint, MemoryExample, MeshResult, PlanePoint, TechniqueFigures};
 use crate::accuracy::LinearImage;
 use crate::accuracy::display::display_linear;
 use crate::accuracy::luv::luv_distance;
@@ -14,19 +14,19 @@ use crate::reference::{ReferenceError, Truth};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stats::Stats;
 
-/// Slices, uniform planes, smart planes.
-const WAYS_BY_PLANES: usize = 3;
+/// The number of techniques with planes: slices, uniform planes, smart planes.
+const PLANE_TECHNIQUES: usize = 3;
 /// Water cells that placement by hits is measured with.
 const HIT_CELLS: [u32; 8] = [24, 32, 48, 64, 96, 128, 192, 256];
-/// Split levels that each number of cells is measured with: none, as planes have it, and the default.
+/// Split levels that each number of cells is measured with: none, as for planes, and the default.
 const HIT_SPLIT_LEVELS: [u32; 2] = [0, 2];
 
-/// Whether the time of a pass is a way's own: slices and planes have it, and hits have not.
+/// Whether a pass belongs to slices or planes only, and not to hits.
 fn is_own(pass: &str) -> bool {
     let mut of_hits = level_map::METHOD.passes.iter();
     let of_planes = planes::METHOD.passes.iter();
-    let mut of_ways = of_planes.chain(volumetric::METHOD.passes);
-    of_ways.any(|own| own.name == pass) && !of_hits.any(|shared| shared.name == pass)
+    let mut of_techniques = of_planes.chain(volumetric::METHOD.passes);
+    of_techniques.any(|own| own.name == pass) && !of_hits.any(|shared| shared.name == pass)
 }
 
 /// What is measured.
@@ -56,10 +56,10 @@ pub enum ExperimentError {
     /// A frame cannot be rendered.
     #[error(transparent)]
     Render(#[from] crate::render::RenderError),
-    /// The reference cannot be counted.
+    /// The reference cannot be computed.
     #[error("no float64 truth: {0}")]
     Truth(#[from] ReferenceError),
-    /// Figures cannot be compared.
+    /// Images cannot be compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
     /// A plot cannot be drawn.
@@ -72,13 +72,13 @@ pub enum ExperimentError {
 
 /// Renders a scene.
 pub type Render<'a> = dyn FnMut(&ResolvedScene) -> Result<Frame, ExperimentError> + 'a;
-/// Finds the truth about a scene, or `None` where none is wanted.
+/// Computes the truth of a scene; `None` where none is requested.
 pub type FindTruth<'a> = dyn FnMut(&ResolvedScene) -> Result<Option<Truth>, ExperimentError> + 'a;
 
-/// Does the experiment; `progress` hears how many of how many settings are done, and which is at work.
+/// Runs the experiment; `progress` gets the number of finished frames, the total, and what is running.
 ///
 /// # Errors
-/// [`ExperimentError`]; nothing is left out.
+/// [`ExperimentError`]; any failure ends the experiment.
 pub fn measure(
     settings: &Settings,
     render: &mut Render<'_>,
@@ -86,7 +86,7 @@ pub fn measure(
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Result<Experiment, ExperimentError> {
     let settings_of_each =
-        WAYS_BY_PLANES * settings.planes.len() + HIT_CELLS.len() * HIT_SPLIT_LEVELS.len();
+        PLANE_TECHNIQUES * settings.planes.len() + HIT_CELLS.len() * HIT_SPLIT_LEVELS.len();
     let each = settings_of_each * (settings.runs.max(1) as usize + 1);
     let total = settings.meshes.len() * each;
     let mut experiment = Experiment {
@@ -106,18 +106,19 @@ pub fn measure(
         let truth = truth.as_ref();
         let by_planes = settings.planes.iter().flat_map(|&planes| {
             [
-                Way::Volumetric(planes),
-                Way::Uniform(planes),
-                Way::Smart(planes),
+                Technique::Volumetric(planes),
+                Technique::Uniform(planes),
+                Technique::Smart(planes),
             ]
         });
-        let mut scenes: Vec<ResolvedScene> = by_planes.map(|way| way.of(&base)).collect();
+        let mut scenes: Vec<ResolvedScene> =
+            by_planes.map(|technique| technique.of(&base)).collect();
         let hits: Vec<(u32, u32)> = HIT_CELLS
             .into_iter()
             .flat_map(|cells| HIT_SPLIT_LEVELS.map(|levels| (cells, levels)))
             .collect();
         scenes.extend(hits.iter().map(|&(water_cells, split_levels)| {
-            let mut hit = Way::Hit.of(&base);
+            let mut hit = Technique::Hit.of(&base);
             hit.scene.quality.water_cells = water_cells;
             hit.scene.quality.split_levels = split_levels;
             hit
@@ -132,23 +133,25 @@ pub fn measure(
                 ),
             );
         })?;
-        let (by_planes, by_hits) = measured.split_at(WAYS_BY_PLANES * settings.planes.len());
+        let (by_planes, by_hits) = measured.split_at(PLANE_TECHNIQUES * settings.planes.len());
         let mut result = MeshResult {
             name: name.clone(),
             triangles: base.meshes[0].triangles.len() as u64,
             truth_error: truth.map(|t| t.relative_error),
             ..MeshResult::default()
         };
-        for (&planes, ways) in settings
+        for (&planes, techniques) in settings
             .planes
             .iter()
-            .zip(by_planes.chunks_exact(WAYS_BY_PLANES))
+            .zip(by_planes.chunks_exact(PLANE_TECHNIQUES))
         {
-            result.planes.push(plane_point(&base, planes, ways, truth)?);
+            result
+                .planes
+                .push(plane_point(&base, planes, techniques, truth)?);
         }
-        for ((water_cells, split_levels), way) in hits.into_iter().zip(by_hits) {
-            experiment.adapter = way.frame.stats.adapter.clone();
-            let figures = way.figures(truth)?;
+        for ((water_cells, split_levels), hit) in hits.into_iter().zip(by_hits) {
+            experiment.adapter = hit.frame.stats.adapter.clone();
+            let figures = hit.figures(truth)?;
             result.hits.push(HitPoint {
                 water_cells,
                 split_levels,
@@ -160,17 +163,17 @@ pub fn measure(
     Ok(experiment)
 }
 
-/// The figures of a number of planes, from its slices, uniform and smart planes.
+/// The measurements of a number of planes, from its slices, uniform and smart planes.
 fn plane_point(
     base: &ResolvedScene,
     planes: u32,
-    ways: &[Measured],
+    techniques: &[Measured],
     truth: Option<&Truth>,
 ) -> Result<PlanePoint, ExperimentError> {
-    let [volumetric, uniform, smart] = ways else {
+    let [volumetric, uniform, smart] = techniques else {
         return Err(ExperimentError::Scene(format!(
-            "{} ways instead of {WAYS_BY_PLANES}",
-            ways.len()
+            "{} techniques instead of {PLANE_TECHNIQUES}",
+            techniques.len()
         )));
     };
     let white_w_m2 = std::f64::consts::PI
@@ -218,14 +221,14 @@ fn refused(error: &crate::scene::SceneError) -> ExperimentError {
     ExperimentError::Scene(error.to_string())
 }
 
-/// A way's picture and the costs of its runs.
+/// A technique's picture and the costs of its runs.
 struct Measured {
     frame: Frame,
     runs: Vec<Stats>,
 }
 
-/// Renders each scene once to warm up, then all in turns, so that a machine's good and bad moments come to all; `progress` hears how
-/// many frames are done.
+/// Renders each scene once to warm up, then all interleaved, so that changes of the machine's speed affect all alike. `progress` gets the
+/// number of finished frames.
 fn timed(
     scenes: &[ResolvedScene],
     runs: u32,
@@ -234,7 +237,7 @@ fn timed(
 ) -> Result<Vec<Measured>, ExperimentError> {
     let mut all = Vec::with_capacity(scenes.len());
     let mut rendered = 0;
-    // Takes what the shape before has left.
+    // Absorbs what the shape before has left in caches.
     if let Some(first) = scenes.first() {
         render(first)?;
     }
@@ -270,18 +273,18 @@ impl Measured {
         }
     }
 
-    fn figures(&self, truth: Option<&Truth>) -> Result<WayFigures, ExperimentError> {
+    fn figures(&self, truth: Option<&Truth>) -> Result<TechniqueFigures, ExperimentError> {
         let own = |stats: &Stats| -> Option<f64> {
             let passes = stats.passes.iter().filter(|pass| is_own(&pass.name));
-            // Hits have none of them.
+            // Hits have no such pass.
             let times: Vec<Option<f64>> = passes.map(|pass| pass.gpu_ms).collect();
             times.first()?;
             times.into_iter().sum()
         };
         let own_ms: Option<Vec<f64>> = self.runs.iter().map(own).collect();
-        // Of the first round, where what comes before is alike: frames of many more cells leave buffers to their successors.
+        // From the first round: later, frames with many more cells have left buffers for their successors.
         let memory = &self.frame.stats.memory;
-        Ok(WayFigures {
+        Ok(TechniqueFigures {
             ms: SpreadMs::of(self.runs.iter().map(|stats| stats.time_ms.gpu).collect())
                 .unwrap_or_default(),
             own_ms: own_ms.and_then(SpreadMs::of).map(|spread| spread.median),
@@ -308,7 +311,7 @@ impl Measured {
 fn memory_example() -> Result<MemoryExample, ExperimentError> {
     const OBJECTS: u64 = 100;
     const PLANES: u32 = 100;
-    let scene = Way::Volumetric(PLANES).of(&scene("box", 2, 512)?);
+    let scene = Technique::Volumetric(PLANES).of(&scene("box", 2, 512)?);
     let facts = crate::methods::facts(&scene).map_err(|error| refused(&error))?;
     let level_map = crate::plan::level_maps(&facts)
         .first()

@@ -1,8 +1,8 @@
-//! Published experiments done again with this program: the thesis's comparison of level maps with slice images and of smart with
-//! uniform slicing (Tipprasert 2006, ch. 5), in our numbers, with the true error that the thesis could not measure.
+//! Repeats published experiments: the thesis's comparison of level maps with slice images and of smart with uniform slicing
+//! (Tipprasert 2006, ch. 5), with the true error, which the thesis could not measure.
 //!
-//! `scene` makes the scene of a shape, `measure` renders it each way, `study` holds what was found, `paper` what the thesis found,
-//! `markdown`, `csv` and `write` make files of it.
+//! `scene` makes the scene of a shape, `measure` renders it with each technique, `study` holds our measurements and `paper` the thesis's;
+//! `markdown`, `csv` and `write` write files.
 
 mod csv;
 mod markdown;
@@ -15,6 +15,6 @@ mod write;
 pub use csv::to_csv;
 pub use markdown::to_markdown;
 pub use measure::{ExperimentError, FindTruth, Render, Settings, measure};
-pub use scene::{Way, scene};
-pub use study::{Experiment, HitPoint, MemoryExample, MeshResult, PlanePoint, WayFigures};
+pub use scene::{Technique, scene};
+pub use study::{Experiment, HitPoint, MemoryExample, MeshResult, PlanePoint, TechniqueFigures};
 pub use write::{FEATURED, plots, write};

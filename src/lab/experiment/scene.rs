@@ -17,21 +17,21 @@ const EXTENT_M: f64 = 0.6;
 
 /// How light is placed on the shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
-    /// A slice image for each of so many planes.
+pub enum Technique {
+    /// The given number of planes, with a slice image for each.
     Volumetric(u32),
-    /// So many reference planes on a level map.
+    /// The given number of reference planes on a level map.
     Uniform(u32),
-    /// Of so many reference planes those with a surface near them.
+    /// Of the given number of reference planes, those with a surface near them.
     Smart(u32),
-    /// Rays marched to where they hit.
+    /// Light at the points where marched rays hit.
     Hit,
 }
 
 /// A shape of the catalogue 1 m under short waves that focus on it: its irradiance map of `texels`², lit through `water_cells`².
 ///
 /// # Errors
-/// [`ExperimentError::Shape`] for a name that is none.
+/// [`ExperimentError::Shape`] for an unknown name.
 pub fn scene(name: &str, water_cells: u32, texels: u32) -> Result<ResolvedScene, ExperimentError> {
     let shape = Shape::named(name).ok_or_else(|| ExperimentError::Shape(name.to_owned()))?;
     let mesh = shape
@@ -58,8 +58,8 @@ pub fn scene(name: &str, water_cells: u32, texels: u32) -> Result<ResolvedScene,
     .map_err(refused)
 }
 
-impl Way {
-    /// The scene with light placed this way.
+impl Technique {
+    /// The scene with this technique.
     pub fn of(self, scene: &ResolvedScene) -> ResolvedScene {
         let slices = |method: &Method, count| MethodChoice::named(method.name).with(&PLANES, count);
         let choice = match self {

@@ -1,4 +1,4 @@
-//! What the experiment found.
+//! The results of the experiment.
 
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// Whether this is what this version of the program finds with `settings`, up to its times.
+    /// Whether this is a result of this version of the program with `settings`, apart from the times.
     pub fn is_of(&self, settings: &Settings) -> bool {
         let names = self.meshes.iter().map(|mesh| &mesh.name);
         let planes_of =
@@ -72,15 +72,15 @@ pub struct MeshResult {
 /// A number of planes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlanePoint {
-    /// Planes that were asked for.
+    /// The requested number of planes.
     pub planes: u32,
     /// A slice image for each.
-    pub volumetric: WayFigures,
+    pub volumetric: TechniqueFigures,
     /// All on the level map.
-    pub uniform: WayFigures,
+    pub uniform: TechniqueFigures,
     /// Those with a surface near them.
-    pub smart: WayFigures,
-    /// How many those are.
+    pub smart: TechniqueFigures,
+    /// The number of these planes.
     pub used: u32,
     /// Pieces of the box that hold them.
     pub sub_boxes: u32,
@@ -94,19 +94,19 @@ pub struct PlanePoint {
     pub texels: u32,
 }
 
-/// What a way costs and how far off it is.
+/// Cost and error of a technique.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct WayFigures {
+pub struct TechniqueFigures {
     /// GPU time of the frame, ms.
     pub ms: SpreadMs,
     /// Of that, the passes that place light by planes (median), ms; absent when passes cannot be timed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub own_ms: Option<f64>,
-    /// What the plan says the frame holds, bytes.
+    /// Peak memory by the plan, bytes.
     pub planned_bytes: u64,
-    /// What it did hold by the program's account, bytes.
+    /// Measured peak by the program's own account, bytes.
     pub peak_bytes: u64,
-    /// What the allocator had given out, bytes; absent where the backend does not tell.
+    /// Memory by the allocator, bytes; absent where the backend does not report it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub allocated_bytes: Option<u64>,
     /// Relative L1 error against the float64 reference; absent without one.
@@ -119,8 +119,8 @@ pub struct WayFigures {
 pub struct HitPoint {
     /// Water cells along each side of the window.
     pub water_cells: u32,
-    /// How often a beam that straddles receivers is halved.
+    /// How often a beam that straddles receivers is split.
     pub split_levels: u32,
-    /// What it costs.
-    pub figures: WayFigures,
+    /// Cost and error.
+    pub figures: TechniqueFigures,
 }

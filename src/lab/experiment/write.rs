@@ -1,4 +1,4 @@
-//! The experiment as files.
+//! Writes the experiment's files.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -8,11 +8,11 @@ use serde_json::json;
 use super::csv::to_csv;
 use super::markdown::to_markdown;
 use super::measure::ExperimentError;
-use super::study::{Experiment, MeshResult, WayFigures};
+use super::study::{Experiment, MeshResult, TechniqueFigures};
 use crate::lab::study::plot::{LineChart, Plot, PlotError, error_against_time, lines};
 use crate::lab::study::study::{CostFigures, ErrorFigures, Point, Study, Sweep, TruthFigures};
 
-/// Shapes that the page shows one by one: those of the thesis's tables.
+/// Shapes with a section of their own on the page: those of the thesis's tables.
 pub const FEATURED: [&str; 3] = ["teapot", "dolphin", "sphere"];
 
 /// File of the plot of time against planes.
@@ -63,7 +63,7 @@ pub fn plots(experiment: &Experiment, mesh: &MeshResult) -> Result<Vec<(String, 
 
 /// The shape's errors and times as a study of the accuracy module, which draws them.
 fn error_study(experiment: &Experiment, mesh: &MeshResult) -> Study {
-    let point = |value: u32, figures: &WayFigures| Point {
+    let point = |value: u32, figures: &TechniqueFigures| Point {
         dials: BTreeMap::from([("value".to_owned(), json!(value))]),
         error: ErrorFigures {
             relative_l1: figures.error.unwrap_or_default(),
@@ -82,7 +82,7 @@ fn error_study(experiment: &Experiment, mesh: &MeshResult) -> Study {
         points,
         ..Sweep::default()
     };
-    let planes = |of: &dyn Fn(&super::PlanePoint) -> WayFigures| {
+    let planes = |of: &dyn Fn(&super::PlanePoint) -> TechniqueFigures| {
         mesh.planes
             .iter()
             .map(|p| point(p.planes, &of(p)))
@@ -113,7 +113,7 @@ fn error_study(experiment: &Experiment, mesh: &MeshResult) -> Study {
     study
 }
 
-/// Marks the points that no other is both faster and nearer than.
+/// Marks the points for which no other point is both faster and more accurate.
 fn mark_front(study: &mut Study) {
     let all: Vec<(f64, f64)> = study
         .sweeps

@@ -17,13 +17,13 @@ use crate::render::{RenderError, Renderer};
 use crate::scene::{LayerName, ResolvedScene, Scene, SceneError};
 use crate::stats::{Stats, Warning};
 
-/// Most that an energy account may be open by.
+/// Largest allowed closure of an energy account.
 const MOST_CLOSURE: f64 = 1e-5;
 
-/// A renderer, and what was seen on the way.
+/// A renderer, and what was observed while a case ran.
 #[derive(Debug)]
 pub struct Bench<'a> {
-    /// `None` where a case is only asked for its scene.
+    /// `None` where only the case's scene is requested.
     renderer: Option<&'a mut Renderer>,
     pub(super) truths: &'a mut Truths,
     scene: Option<Value>,
@@ -70,7 +70,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The scene that the case began with.
+    /// The case's first scene.
     pub(super) fn into_scene(self) -> Option<Value> {
         self.scene
     }
@@ -79,7 +79,7 @@ impl<'a> Bench<'a> {
         self.settings
     }
 
-    /// The renderer, for what is not just rendering a scene.
+    /// The renderer, for cases that do more than render a scene.
     pub(super) fn renderer(&mut self) -> Result<&mut Renderer, Failure> {
         self.renderer.as_deref_mut().ok_or_else(nothing_renders)
     }
@@ -93,7 +93,7 @@ impl<'a> Bench<'a> {
         resolved(&mut self.meshes, value)
     }
 
-    /// Renders a scene twice: both times the same bits, finite, and every account closed.
+    /// Renders a scene twice, and checks that both have the same bits, that all values are finite, and that every account closes.
     pub(super) fn render(&mut self, value: Value) -> Result<Frame, Failure> {
         let resolved = self.scene(value)?;
         self.render_resolved(&resolved)
@@ -121,14 +121,14 @@ impl<'a> Bench<'a> {
             };
             if bits(&frame) != bits(&again) {
                 return Err(Failure::Check(format!(
-                    "{name:?} differs from one time to the next"
+                    "{name:?} differs between two renders"
                 )));
             }
         }
         if let Some(unsaid) = unsaid(&frame.stats) {
             return Err(Failure::Check(unsaid));
         }
-        // Planes do not conserve energy; that they say so, and how much it is, was checked.
+        // Planes do not conserve energy; that the frame warns with the flux was checked above.
         let by_planes = !frame.stats.planes.is_empty();
         for account in frame.stats.energy.iter().filter(|_| !by_planes) {
             self.closure = self.closure.max(account.closure);
@@ -168,7 +168,7 @@ impl<'a> Bench<'a> {
         self.warnings.contains_key(code)
     }
 
-    /// The scene must be refused with a finding at `pointer`: 0, or 1 where it is not.
+    /// 0 if the scene is refused with an error at `pointer`, otherwise 1.
     pub(super) fn refused_at(&mut self, value: Value, pointer: &str) -> Result<f64, Failure> {
         match self.render(value) {
             Err(Failure::Scene(SceneError { issues })) => {
@@ -193,7 +193,7 @@ impl<'a> Bench<'a> {
 
     pub(super) fn outcome(self, case: &'static Case, result: Result<f64, Failure>) -> Outcome {
         let (figure, failure) = match result {
-            // NaN is never under a bound.
+            // NaN fails the comparison.
             Ok(figure) if figure <= case.bound => (Some(figure), None),
             Ok(figure) => (
                 Some(figure),
@@ -223,36 +223,38 @@ fn nothing_renders() -> Failure {
     Failure::Check("there is no renderer".to_owned())
 }
 
-/// Flux of the first channel that the warnings of this kind tell of, W.
-pub(super) fn told_w(frame: &Frame, code: &str) -> f64 {
+/// Flux of the first channel that warnings with this code report, W.
+pub(super) fn reported_w(frame: &Frame, code: &str) -> f64 {
     let warnings = frame.stats.warnings.iter().filter(|w| w.code == code);
     warnings.filter_map(|w| Some(w.flux_w?[0])).sum()
 }
 
-/// What the accounts list as lost or only roughly placed, and no warning tells; or a warning about flux that does not say how much.
+/// Flux that the accounts list as lost or only roughly placed and that no warning reports, or a warning that lacks its flux.
 fn unsaid(stats: &Stats) -> Option<String> {
-    let told = |code: &str| {
+    let reported = |code: &str| {
         let mut found = stats.warnings.iter().filter(|w| w.code == code);
         found.find_map(|w| w.flux_w)
     };
     for warning in &stats.warnings {
-        let tells = warning
+        let has_flux = warning
             .flux_w
             .is_some_and(|w| w.iter().all(|v| v.is_finite()));
-        if !tells && !Warning::WITHOUT_FLUX.contains(&warning.code.as_str()) {
+        if !has_flux && !Warning::WITHOUT_FLUX.contains(&warning.code.as_str()) {
             return Some(format!("`{}` does not say how much flux", warning.code));
         }
     }
     let scattered: [f64; 3] =
         std::array::from_fn(|c| stats.energy.iter().map(|a| a.scattered_w[c]).sum());
-    if scattered != [0.0; 3] && told("scattering_not_followed") != Some(scattered) {
-        return Some(format!("{scattered:?} W are scattered and not warned of"));
+    if scattered != [0.0; 3] && reported("scattering_not_followed") != Some(scattered) {
+        return Some(format!("{scattered:?} W are scattered without a warning"));
     }
     let open = stats.energy.iter().find(|a| a.closure > MOST_CLOSURE);
     match open {
-        Some(account) if !stats.planes.is_empty() && told("method_does_not_conserve").is_none() => {
+        Some(account)
+            if !stats.planes.is_empty() && reported("method_does_not_conserve").is_none() =>
+        {
             Some(format!(
-                "planes place {:e} of the flux of light {} too much or too little and do not say so",
+                "planes place {:e} of the flux of light {} too much or too little, without a warning",
                 account.closure, account.light
             ))
         }

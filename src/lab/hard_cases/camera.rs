@@ -11,37 +11,38 @@ use crate::physics::fresnel::{diffuse_transmittance, fresnel_reflectance, fresne
 use crate::physics::refraction::{reflect_direction, refract_direction};
 use crate::scene::{self, LayerName, Light, ResolvedScene};
 
-const RADIANCE: &str = "worst pixel against ρE/π and the sky through the water's surface and by it";
-const REFUSED: &str = "0 where it is refused at that field";
-/// Nearer to the floor's rim than this share of its distance a ray's end may round to either side.
+const RADIANCE: &str =
+    "worst pixel against ρE/π and the sky, refracted and reflected by the water's surface";
+const REFUSED: &str = "0 if the scene is refused at that field";
+/// Closer to the floor's rim than this share of its distance, rounding may put a ray's end on either side.
 const RIM: f64 = 1e-3;
 
 pub(super) const CASES: &[Case] = &[
     Camera.case(
         "a_micrometre_under_the_surface",
-        "a start on the wrong side",
+        "a ray that starts on the wrong side of the surface",
         RADIANCE,
         5e-5,
         |b| flat_error(b, looking(-1e-6)),
     ),
     Camera.case(
         "a_micrometre_over_the_surface",
-        "a start on the wrong side",
+        "a ray that starts on the wrong side of the surface",
         RADIANCE,
         5e-5,
         |b| flat_error(b, looking(1e-6)),
     ),
     Camera.case(
         "on_the_surface",
-        "a start on neither side",
+        "a ray that starts on neither side of the surface",
         RADIANCE,
         5e-5,
         |b| flat_error(b, looking(0.0)),
     ),
     Camera.case(
         "on_a_wave",
-        "a start within a crest",
-        "worst pixel against ρE/π through the wave's surface and the sky by it, or against ρE/π from the water",
+        "a ray that starts inside a crest",
+        "worst pixel against ρE/π refracted and the sky reflected by the wave's surface, or against ρE/π seen from under the water",
         2.5e-6,
         |b| {
             let on = on_a_wave(b, 0.0)?;
@@ -52,21 +53,21 @@ pub(super) const CASES: &[Case] = &[
     ),
     Camera.case(
         "a_view_of_a_floor_at_depth_0",
-        "looks that start behind what they should see",
+        "camera rays that start behind what they should hit",
         RADIANCE,
         5e-5,
         |b| flat_error(b, over_a_floor_at(0.0)),
     ),
     Camera.case(
         "a_view_of_a_floor_at_a_tenth_of_a_millimetre",
-        "looks that start behind what they should see",
+        "camera rays that start behind what they should hit",
         RADIANCE,
         5e-5,
         |b| flat_error(b, over_a_floor_at(1e-4)),
     ),
     Camera.case(
         "along_its_own_up",
-        "a basis without a right",
+        "a camera basis without a right vector",
         REFUSED,
         0.0,
         |b| {
@@ -82,7 +83,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Camera.case(
         "a_field_of_view_of_a_tenth_of_a_degree",
-        "pixels of almost one ray",
+        "pixels whose rays are almost the same",
         RADIANCE,
         2e-4,
         |b| {
@@ -98,7 +99,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Camera.case(
         "a_field_of_view_of_179_degrees",
-        "pixels of grazing rays",
+        "pixels with grazing rays",
         RADIANCE,
         5e-6,
         |b| {
@@ -112,7 +113,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Camera.case(
         "under_water_at_the_critical_angle",
-        "total reflection at its very edge",
+        "total reflection exactly at its limit",
         RADIANCE,
         1e-4,
         |b| {
@@ -127,7 +128,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Camera.case(
         "one_pixel",
-        "a picture without neighbours",
+        "a pixel without neighbours",
         RADIANCE,
         1e-5,
         |b| {
@@ -157,7 +158,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Camera.case(
         "pictures_of_8192_by_8192_pixels",
-        "memory without end",
+        "unbounded memory",
         REFUSED,
         0.0,
         |b| {
@@ -207,7 +208,7 @@ fn under_the_sky(scene: Value) -> Value {
     with(scene, &[("/lights", json!([sun(60.0, 30.0), sky]))])
 }
 
-/// What is seen of clear water over an evenly lit floor: every pixel by Snell and Fresnel for its own ray.
+/// The expected view of clear water over an evenly lit floor: Snell and Fresnel for the ray of each pixel.
 struct Clear {
     eye: DVec3,
     forward: DVec3,
@@ -222,7 +223,7 @@ struct Clear {
 }
 
 impl Clear {
-    /// Of a scene at the origin that has a floor and a perspective camera.
+    /// For a scene at the origin that has a floor and a perspective camera.
     fn of(resolved: &ResolvedScene) -> Result<Self, Failure> {
         let scene = &resolved.scene;
         let (Some(floor), Some(scene::Camera::Perspective(camera)), scene::Output::View(output)) =
@@ -268,7 +269,7 @@ impl Clear {
         })
     }
 
-    /// 1 where a ray under water ends on the floor, 0 where beside it; `None` where on its rim.
+    /// 1 where a ray under water ends on the floor, 0 where it misses the floor; `None` on the floor's rim.
     fn on_floor(&self, from: DVec3, direction: DVec3) -> Option<f64> {
         if direction.y >= 0.0 {
             return Some(0.0);
@@ -293,7 +294,7 @@ impl Clear {
         let refracted = refract_direction(direction, normal, eta);
         let through = fresnel_transmittance(cos_i, eta) / (eta * eta);
         let back = fresnel_reflectance(cos_i, eta);
-        // Of the two ways one is in the water, the other in the air.
+        // One of the two paths is in the water, the other in the air.
         let (floor, sky) = if eta > 1.0 {
             let on = refracted.map_or(Some(0.0), |ray| self.on_floor(from, ray))?;
             (through * on, back)
@@ -329,8 +330,8 @@ impl Clear {
         Some(self.floor.map(|l| on * l))
     }
 
-    /// Largest relative error of the picture against the radiance of each pixel's ray; where none is due, any is an error of 1. Few
-    /// pixels may look at the floor's rim.
+    /// Largest relative error of the picture against the radiance of each pixel's ray; where none is expected, any is an error of 1.
+    /// Only few pixels may show the floor's rim.
     fn error(
         &self,
         found: &[[f64; 3]],
@@ -372,7 +373,7 @@ fn flat_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
     })
 }
 
-/// A floor so deep, seen aslant from the air.
+/// A floor at the given depth, seen at an angle from the air.
 fn over_a_floor_at(depth_m: f64) -> Value {
     with(
         camera([0.0, 2.0, 1.5], [0.0, 0.0, 0.0], json!({})),
@@ -380,9 +381,9 @@ fn over_a_floor_at(depth_m: f64) -> Value {
     )
 }
 
-/// Worst pixel of two views, down and up, of a camera at a wave or so far above it, against what is to be seen from its side of the wave.
-/// A sky lights the floor evenly whatever the waves; rays cross the surface where the camera is. On the wave itself rounding puts it on
-/// either side, which has to be the same for all pixels of a view.
+/// Worst pixel of two views, down and up, of a camera on a wave or at a given height above it, against the expected view from its side of
+/// the wave. A sky lights the floor evenly regardless of the waves; rays cross the surface at the camera. On the wave itself rounding puts
+/// the camera on either side, which has to be the same for all pixels of a view.
 fn on_a_wave(bench: &mut Bench<'_>, above_m: f64) -> Result<f64, Failure> {
     let (x_m, z_m) = (0.3, 0.1);
     let (height_m, normal) = waves_at(x_m, z_m);
@@ -414,7 +415,7 @@ fn on_a_wave(bench: &mut Bench<'_>, above_m: f64) -> Result<f64, Failure> {
                 clear.down_in_water(ray)
             }
         })?;
-        // Right on the wave a look may be on either side, the two of them on different ones: each has its own rounding of the wave.
+        // Exactly on the wave each of the two views may be on either side, because each rounds the wave's height by itself.
         let of_side = if above_m > 0.0 {
             dry
         } else if above_m < 0.0 {

@@ -1,4 +1,4 @@
-//! What a case is, and what came of it.
+//! A hard case and its outcome.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ pub enum Family {
     Light,
     /// Flat, tiny and steep waves, depths, indices, times, absorption.
     Water,
-    /// The same scene elsewhere, smaller and larger.
+    /// The same scene in another place, smaller and larger.
     Place,
     /// Broken, thin, tiny, huge and awkwardly placed meshes.
     Mesh,
@@ -23,7 +23,7 @@ pub enum Family {
     Fold,
     /// Awkward cameras and sizes of pictures.
     Camera,
-    /// A device that is lost, runs out of memory, is cancelled, and is used for days.
+    /// A device that is lost, runs out of memory, is cancelled, or is used for days.
     Machine,
 }
 
@@ -82,18 +82,18 @@ pub struct Case {
     pub family: Family,
     /// What could break.
     pub breaks: &'static str,
-    /// How that would show: what the figure is.
+    /// How it would show: what the figure measures.
     pub check: &'static str,
-    /// Most that the figure may be.
+    /// Largest allowed figure.
     pub bound: f64,
-    /// Renders, and gives the figure.
+    /// Renders, and returns the figure.
     pub run: fn(&mut Bench<'_>) -> Result<f64, Failure>,
-    /// Why it is known to fail, where it is: then it has to.
+    /// Why it is known to fail, if it is. Then it must fail.
     pub known_failure: Option<&'static str>,
 }
 
 impl Case {
-    /// The same case, known to fail.
+    /// This case, marked as known to fail.
     pub(super) const fn known_to_fail(mut self, why: &'static str) -> Self {
         self.known_failure = Some(why);
         self
@@ -114,33 +114,33 @@ pub enum Failure {
     Check(String),
 }
 
-/// How a case ended.
+/// The result of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// As it should.
+    /// It holds.
     Holds,
-    /// Not as it should.
+    /// It fails.
     Fails,
-    /// As is known.
+    /// It fails, as known.
     FailsAsKnown,
-    /// It is said to fail and holds: the note is out of date.
+    /// It is marked as known to fail but holds: the mark is out of date.
     HoldsAfterAll,
 }
 
 impl Verdict {
-    /// Whether nobody has to look.
+    /// Whether this result is as expected.
     pub fn is_expected(self) -> bool {
         matches!(self, Self::Holds | Self::FailsAsKnown)
     }
 }
 
-/// What came of a case.
+/// The outcome of a case.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The case.
     pub case: &'static Case,
-    /// How it ended.
+    /// Its result.
     pub verdict: Verdict,
     /// Its figure.
     pub figure: Option<f64>,
@@ -148,8 +148,8 @@ pub struct Outcome {
     pub failure: Option<String>,
     /// Largest closure of the energy accounts of its pictures.
     pub closure: f64,
-    /// Codes of the warnings that its pictures came with, and the flux concerned where it was measured, W.
+    /// Codes of the warnings of its pictures, and the affected flux where it was measured, W.
     pub warnings: Vec<(String, Option<f64>)>,
-    /// The last picture that is worth showing.
+    /// The last picture, for the page.
     pub picture: Option<Frame>,
 }

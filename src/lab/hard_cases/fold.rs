@@ -13,7 +13,7 @@ const REFERENCE: &str = "relative L1 against the reference";
 pub(super) const CASES: &[Case] = &[
     Fold.case(
         "footprints_that_turn_inside_out",
-        "signed areas taken for flux",
+        "signed areas that are used as flux",
         REFERENCE,
         0.01,
         |b| {
@@ -30,7 +30,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Fold.case(
         "footprints_within_one_texel",
-        "divisions by footprints",
+        "divisions by the footprint's area",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, sized(1024, 2, 2)),
@@ -51,14 +51,14 @@ pub(super) const CASES: &[Case] = &[
     ),
     Fold.case(
         "texels_long_and_thin",
-        "rows and columns taken alike",
+        "rows and columns that are confused",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, sized(16, 2048, 2)),
     ),
     Fold.case(
         "every_corner_on_a_texel_corner",
-        "boundaries counted twice or not at all",
+        "boundary points that are counted twice or not at all",
         CLOSED_FORM,
         1e-6,
         |b| {
@@ -72,8 +72,8 @@ pub(super) const CASES: &[Case] = &[
     ),
     Fold.case(
         "sums_beyond_32_bits",
-        "a focus that wraps a sum",
-        "largest relative difference of the scaled sun's map from the sun's",
+        "a focus that overflows a sum",
+        "largest relative difference between the maps of a sun and of the same sun scaled",
         1e-6,
         |b| {
             let k = std::f64::consts::TAU;
@@ -100,7 +100,7 @@ pub(super) const CASES: &[Case] = &[
             let before = b.renderer()?.wide_sum_reruns();
             let one = b.map(scene(1.0))?;
             if b.renderer()?.wide_sum_reruns() == before {
-                return Err(Failure::Check("no sum has wrapped".to_owned()));
+                return Err(Failure::Check("no sum has overflowed".to_owned()));
             }
             let large: Vec<[f64; 3]> = b
                 .map(scene(1e9))?
@@ -128,7 +128,7 @@ fn on_corners() -> Value {
     )
 }
 
-/// Whether that is so: the margin of the window is not for this case to decide.
+/// Checks this, because the margin of the window is not decided here.
 fn is_on_corners(resolved: &ResolvedScene) -> Result<bool, Failure> {
     let facts = crate::methods::facts(resolved)?;
     let (Some(light), Some(map)) = (facts.lights.beam_sets.first(), facts.receivers.floor_map)
@@ -136,7 +136,7 @@ fn is_on_corners(resolved: &ResolvedScene) -> Result<bool, Failure> {
         return Ok(false);
     };
     let cells = facts.quality.water_cells;
-    // As the shader has them.
+    // As in the shader.
     let texel = (map.rect.size() / f64::from(map.width)).as_vec2();
     let first = light.grid.places.min.as_vec2();
     let cell = (light.grid.places.size() / f64::from(cells)).as_vec2();

@@ -11,13 +11,13 @@ use crate::reference::closed_form::LampOverFlatWater;
 const CLOSED_FORM: &str = "relative L1 against I T h/(ρ² + h²)^(3/2) · (ρ/r)/(dr/dρ) · e^(−cd)";
 const STRAIGHT: &str = "relative L1 against I H/(r² + H²)^(3/2) · e^(−cd)";
 const REFERENCE: &str = "relative L1 against the reference";
-const SPREAD: &str = "all of a hemisphere through a spot of millimetres";
+const SPREAD: &str = "the light of a hemisphere through a spot of a few millimetres";
 
 /// Extinction of the flat water here, 1/m.
 const EXTINCTION_PER_M: f64 = 0.2;
 /// Depth of [`pool`], m.
 const DEPTH_M: f64 = 2.0;
-/// Points along a texel's side at which the closed form is taken.
+/// Points along a texel's side at which the closed form is evaluated.
 const POINTS: u32 = 4;
 
 pub(super) const CASES: &[Case] = &[
@@ -37,7 +37,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Light.case(
         "a_lamp_a_millimetre_under_the_water",
-        "a light on the wrong side",
+        "a light assigned to the wrong side of the surface",
         STRAIGHT,
         1e-4,
         |b| flat_error(b, [0.1, -1e-3, 0.05]),
@@ -58,7 +58,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Light.case(
         "a_lamp_a_millimetre_under_a_wave",
-        "above the water at rest, and under the water",
+        "a light above the water at rest but under the wave",
         REFERENCE,
         0.01,
         |b| reference_error(b, wavy(-1e-3)),
@@ -81,7 +81,7 @@ fn scene(position_m: [f64; 3], water_waves: Value) -> Value {
     )
 }
 
-/// A lamp this far above (below 0: under) the water as the waves have it there.
+/// A lamp this far above the wave at its place (negative: under it).
 fn wavy(above_m: f64) -> Value {
     let (x_m, z_m) = (0.1, 0.05);
     let (height_m, _) = waves_at(x_m, z_m);

@@ -19,7 +19,7 @@ const GRAZING: &str = "cosines near 0, Fresnel near 1, windows of very long rays
 pub(super) const CASES: &[Case] = &[
     Light.case(
         "sun_in_the_zenith",
-        "an azimuth without meaning",
+        "an azimuth that is undefined",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, flat(90.0)),
@@ -42,28 +42,28 @@ pub(super) const CASES: &[Case] = &[
     }),
     Light.case(
         "sun_below_the_horizon",
-        "light from below",
+        "light that comes from below",
         DARK,
         0.0,
         |b| dark(b, flat(-5.0)),
     ),
     Light.case(
         "waves_under_a_sun_at_10_degrees",
-        "waves that look away from the sun",
+        "waves that face away from the sun",
         REFERENCE,
         0.01,
         |b| reference_error(b, wavy(10.0)),
     ),
     Light.case(
         "waves_under_a_sun_at_1_degree",
-        "waves that look away from the sun",
+        "waves that face away from the sun",
         REFERENCE,
         0.01,
         |b| reference_error(b, wavy(1.0)),
     ),
     Light.case(
         "waves_under_a_sun_at_a_hundredth_of_a_degree",
-        "waves that look away from the sun",
+        "waves that face away from the sun",
         REFERENCE,
         0.01,
         |b| reference_error(b, wavy(0.01)),
@@ -114,8 +114,8 @@ pub(super) const CASES: &[Case] = &[
     ),
     Light.case(
         "dim_and_bright_suns_together",
-        "the dim sun lost in the sums of the bright one",
-        "largest difference of the sum from the two suns alone, of the dim from the scaled bright one, of the dim one's channel and account from those it has alone",
+        "rounding in the bright sun's sums that hides the dim sun",
+        "largest difference: of both suns together from the sum of each alone, of the dim sun from the scaled bright one, and of the dim sun's channel and account from those it has alone",
         1e-6,
         dim_and_bright,
     ),

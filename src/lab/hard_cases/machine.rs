@@ -1,4 +1,4 @@
-//! A device that is lost, runs out of memory, must not be held up for long, and is used for days.
+//! A device that is lost, runs out of memory, must not be blocked for long, and is used for days.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -23,24 +23,24 @@ use crate::scene::ResolvedScene;
 
 const SAME: &str = "values that differ from those of the undisturbed frame";
 
-/// MiB of growth that is put down to the allocator of the process, not to us.
+/// MiB of growth that is attributed to the allocator of the process, not to us.
 const NOISE_MIB: f64 = 16.0;
 
-/// MiB by which what the driver's allocator has given out may grow: where it was measured it did not by a byte; a GPU may hold a staging
+/// MiB by which the memory of the driver's allocator may grow. Where it was measured, it did not grow by a byte; a GPU may keep a staging
 /// buffer a little longer.
 const ALLOCATOR_MIB: f64 = 0.25;
 
 pub(super) const CASES: &[Case] = &[
     Machine.case(
         "a_device_lost_in_mid_frame",
-        "a frame that is lost, a service that stays red, caches of a device that is gone",
+        "a lost frame, a service that stays unready, caches of a device that no longer exists",
         SAME,
         0.0,
         lost_in_mid_frame,
     ),
     Machine.case(
         "out_of_memory_once",
-        "a frame refused although the caches could have made way",
+        "a frame that is refused although caches could have been dropped",
         SAME,
         0.0,
         |b| {
@@ -60,7 +60,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Machine.case(
         "out_of_memory_for_good",
-        "a crash, a vague error, a device that is of no use afterwards",
+        "a crash, an unclear error, a device that is unusable afterwards",
         "values that differ in the small scene after the refusal",
         0.0,
         |b| {
@@ -89,7 +89,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Machine.case(
         "every_dispatch_in_pieces",
-        "workgroups left out, done twice, or told the wrong place",
+        "workgroups that are skipped, run twice, or run at the wrong place",
         SAME,
         0.0,
         |b| {
@@ -121,7 +121,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Machine.case(
         "cancelled_between_pieces",
-        "a caller who left, and a GPU that works on for nobody",
+        "a GPU that works on after its caller has cancelled",
         SAME,
         0.0,
         |b| {
@@ -131,11 +131,11 @@ pub(super) const CASES: &[Case] = &[
             let cancel = CancellationToken::new();
             let cancelled = cancel.clone();
             after_submissions(&renderer.gpu().queue, 3, move || cancelled.cancel());
-            // A map of one sun looks at the token before the sun and then between pieces only.
+            // A map of one sun checks the token before the sun and then only between pieces.
             renderer.cut_into(Some(1));
-            let stopped = renderer.render(&scene, &cancel);
+            let cancelled = renderer.render(&scene, &cancel);
             renderer.cut_into(None);
-            if !matches!(stopped, Err(RenderError::Cancelled)) {
+            if !matches!(cancelled, Err(RenderError::Cancelled)) {
                 return Err(Failure::Check("it was rendered to its end".to_owned()));
             }
             let found = renderer.render(&scene, &CancellationToken::new())?;
@@ -145,7 +145,7 @@ pub(super) const CASES: &[Case] = &[
     Machine.case(
         "thousands_of_small_renders",
         "memory that grows with every frame",
-        "MiB gained after the first fifth by the process, or by the driver's allocator, which may not gain a quarter; our own account may not gain a byte",
+        "growth in MiB after the first fifth of the frames, of the process or of the driver's allocator, which may not grow by a quarter; our own account may not grow by a byte",
         NOISE_MIB,
         many_renders,
     ),
@@ -199,7 +199,7 @@ fn keep_exhausted(renderer: &Renderer, starved: &Arc<AtomicBool>) {
     again(gpu.device.clone(), &gpu.queue, Arc::clone(starved));
 }
 
-/// A queue like that of the service, whose device goes in the middle of the second frame.
+/// A queue like that of the service, whose device is lost in the middle of the second frame.
 fn lost_in_mid_frame(bench: &mut Bench<'_>) -> Result<f64, Failure> {
     let scene = bench.scene(with_box())?;
     let expected = bench.render_resolved(&scene)?;
@@ -211,7 +211,7 @@ fn lost_in_mid_frame(bench: &mut Bench<'_>) -> Result<f64, Failure> {
         },
         ..RenderConfig::default()
     };
-    // Whoever runs the suite may be in a runtime of its own.
+    // The caller may already be inside a runtime.
     let done = std::thread::scope(|scope| {
         scope
             .spawn(|| lose_and_recover(config, &scene, &expected))
@@ -232,7 +232,7 @@ fn lose_and_recover(
     let factory = {
         let (armed, seen, watched) = (armed.clone(), seen.clone(), watched.clone());
         move || {
-            // Between the loss and the new device: what everybody sees now.
+            // Between the loss and the new device: the published state.
             if let Some(status) = watched.get() {
                 let status = status.borrow().clone();
                 seen.lock()
@@ -289,8 +289,8 @@ fn lose_and_recover(
     Ok(differing_values(&before, expected) + differing_values(&after, expected))
 }
 
-/// Many frames of a few small scenes; the largest growth after the first fifth of what the driver's allocator and, where nothing else
-/// runs in it, the process hold, MiB. Our own account may not grow by a byte.
+/// Many frames of a few small scenes. Returns the largest growth, in MiB, after the first fifth of the frames, of the driver's allocator
+/// and, where nothing else runs in it, of the process. Our own account may not grow by a byte.
 fn many_renders(bench: &mut Bench<'_>) -> Result<f64, Failure> {
     let few = |scene: Value| {
         with(
@@ -306,7 +306,7 @@ fn many_renders(bench: &mut Bench<'_>) -> Result<f64, Failure> {
         .into_iter()
         .map(|scene| bench.scene(scene))
         .collect::<Result<_, _>>()?;
-    // The same scene comes at the same distance from both looks, and at least once before either.
+    // Both measurements come at the same distance after the same scene, and every scene is rendered at least once before.
     let count = scenes.len() as u32;
     let renders = bench.settings().renders.max(10 * count) / count * count;
     let warm_after = renders / 5 / count * count;
@@ -321,7 +321,7 @@ fn many_renders(bench: &mut Bench<'_>) -> Result<f64, Failure> {
         renderer.render(&scenes[(number % count) as usize], &never)?;
     }
     let cold = Held::by(renderer, is_alone)?;
-    let warm = warm.ok_or_else(|| Failure::Check("nothing was looked at".to_owned()))?;
+    let warm = warm.ok_or_else(|| Failure::Check("nothing was measured".to_owned()))?;
     if cold.resident > warm.resident {
         return Err(Failure::Check(format!(
             "our own account grew by {} bytes",
@@ -346,21 +346,21 @@ fn many_renders(bench: &mut Bench<'_>) -> Result<f64, Failure> {
 struct Held {
     /// By our own account.
     resident: u64,
-    /// By the driver's allocator; `None` where the backend has none that tells.
+    /// By the driver's allocator; `None` where the backend does not report it.
     allocated: Option<u64>,
     /// By the process; `None` where it is not ours alone, and off Linux.
     process: Option<u64>,
 }
 
 impl Held {
-    /// What is held now. Who should tell and does not is a failure: a leak could hide there.
+    /// The memory that is held now. A source that should report and does not is a failure, because it could hide a leak.
     fn by(renderer: &Renderer, is_alone: bool) -> Result<Self, Failure> {
-        let missing = |who: &str| Failure::Check(format!("{who} does not say what it holds"));
+        let missing = |who: &str| Failure::Check(format!("{who} does not report its memory"));
         let device = &renderer.gpu().device;
         let report = device.generate_allocator_report();
         let backend = device.adapter_info().backend;
-        let tells = matches!(backend, wgpu::Backend::Vulkan | wgpu::Backend::Dx12);
-        if tells && report.is_none() {
+        let reports = matches!(backend, wgpu::Backend::Vulkan | wgpu::Backend::Dx12);
+        if reports && report.is_none() {
             return Err(missing("the driver's allocator"));
         }
         let process = is_alone.then(process_bytes).flatten();

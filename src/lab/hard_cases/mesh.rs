@@ -19,9 +19,11 @@ use crate::physics::refraction::{direction_to_light, refract_direction};
 use crate::scene::{LayerName, MethodChoice, Quality};
 
 const REFERENCE: &str = "relative L1 of the floor against the reference";
-const SAME: &str = "largest difference of the floor from that of the sound mesh, to the mean";
-const SHADOW: &str = "flux missing on the floor against irradiance times the area of the shadow";
-const OPEN: &str = "largest difference of the floor from that without the mesh, to the mean";
+const SAME: &str =
+    "largest difference of the floor from that under the intact mesh, relative to the mean";
+const SHADOW: &str = "missing flux on the floor against irradiance times the area of the shadow";
+const OPEN: &str =
+    "largest difference of the floor from that without the mesh, relative to the mean";
 
 pub(super) const CASES: &[Case] = &[
     Mesh.case(
@@ -42,7 +44,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Mesh.case(
         "degenerate_triangles_among_sound_ones",
-        "normals of nothing",
+        "normals of length 0",
         SAME,
         1e-6,
         |b| {
@@ -52,7 +54,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Mesh.case(
         "duplicate_triangles",
-        "surfaces that hide themselves",
+        "surfaces that shadow themselves",
         SAME,
         1e-6,
         |b| {
@@ -68,7 +70,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Mesh.case(
         "needle_triangles",
-        "determinants of nearly nothing",
+        "determinants close to 0",
         SHADOW,
         2e-5,
         |b| {
@@ -88,15 +90,15 @@ pub(super) const CASES: &[Case] = &[
                     length_m * next_sin
                 );
             }
-            // A level shadow is as large as what casts it.
+            // The shadow of a level object is as large as the object.
             let disk_m2 = 0.5 * f64::from(count) * length_m * length_m * turn.sin();
             shadow_error(b, &disk, disk_m2, 256)
         },
     ),
     Mesh.case(
         "nothing_but_zero_area",
-        "a mesh of no surface",
-        "0 where it is refused in words",
+        "a mesh without any surface",
+        "0 if it is refused with a message",
         0.0,
         |b| match b.map(under_waves("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")) {
             Err(Failure::Check(message)) if message.contains("refused") => Ok(0.0),
@@ -106,7 +108,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Mesh.case(
         "flipped_winding",
-        "sides told by winding",
+        "sides that depend on the winding",
         SAME,
         1e-6,
         |b| {
@@ -114,14 +116,14 @@ pub(super) const CASES: &[Case] = &[
             same_as_box(b, &flipped)
         },
     ),
-    Mesh.case("mixed_winding", "sides told by winding", SAME, 1e-6, |b| {
+    Mesh.case("mixed_winding", "sides that depend on the winding", SAME, 1e-6, |b| {
         let mixed = turned(&cuboid([0.4; 3]), |face| face % 2 == 0);
         same_as_box(b, &mixed)
     }),
     Mesh.case(
         "an_open_box",
-        "insides that are seen",
-        "worst pixel of its bottom and of a wall, seen from above its rim, against their depths' E, on the wall times tan θ_t",
+        "visible insides",
+        "worst pixel of its bottom and of a wall, seen from above its rim, against E at their depths, on the wall times tan θ_t",
         2e-3,
         inside_an_open_box,
     ),
@@ -148,7 +150,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Mesh.case(
         "wholly_above_the_water",
-        "dry meshes that stop wet light",
+        "dry meshes that block light under water",
         OPEN,
         0.0,
         |b| as_open(b, at(&cuboid([0.4; 3]), 1.0)),
@@ -162,7 +164,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Mesh.case(
         "touching_the_floor",
-        "coplanar faces of floor and mesh",
+        "faces of the mesh in the plane of the floor",
         REFERENCE,
         0.01,
         |b| reference_error(b, at(&cuboid([0.4; 3]), -1.8)),
@@ -176,14 +178,14 @@ pub(super) const CASES: &[Case] = &[
     ),
     Mesh.case(
         "around_the_camera",
-        "rays that start within a mesh",
+        "rays that start inside a mesh",
         "relative L1 of the irradiance seen against the reference",
         0.01,
         |b| {
             let scene = with(
                 at(&cuboid([3.0, 3.0, 3.0]), 0.0),
                 &[
-                    // What is seen lies behind the upper side, which is in the air.
+                    // The visible surfaces are behind the upper side, which is in the air.
                     ("/quality/layers", json!(2)),
                     (
                         "/camera",
@@ -217,12 +219,12 @@ pub(super) const CASES: &[Case] = &[
     ),
     Mesh.case(
         "a_plate_on_a_reference_plane",
-        "depths that fall between two planes, or to both",
-        "worst texel of the plate's own map against E cos θ T e^(−cd), by planes through it and with it half way between two",
+        "depths that belong to neither of two planes, or to both",
+        "worst texel of the plate's own map against E cos θ T e^(−cd), with a plane through the plate and with the plate half-way between two planes",
         1e-4,
         on_a_reference_plane,
     ),
-    // A fiftieth of the floor's texels, and just as wide as those of its level map.
+    // A fiftieth of the floor's texels wide, and exactly as wide as those of its level map.
     Mesh.case(
         "a_rod_thinner_than_a_map_texel",
         "objects between the texels",
@@ -237,21 +239,21 @@ pub(super) const CASES: &[Case] = &[
         0.05,
         |b| rod_error(b, 256),
     )
-    .known_to_fail("a mesh that covers no middle of a level map's texel is not drawn there, and lets light through"),
+    .known_to_fail("a mesh that covers no centre of a level map's texel is not drawn there, and lets light through"),
     Mesh.case(
         "a_million_triangles",
-        "buffers, counts and draws of a million",
+        "buffers, counts and draws of a million triangles",
         REFERENCE,
         0.01,
         |b| reference_error(b, at(&hills(708), -1.2)),
     ),
     Mesh.case(
         "detail_of_a_centimetre_a_thousand_kilometres_out",
-        "coordinates in f32",
-        "largest difference of a comb's shadow from that of the comb at the origin, to the mean",
+        "f32 coordinates",
+        "largest difference of a comb's shadow from that of the comb at the origin, relative to the mean",
         1e-5,
         |b| {
-            // Half a decimetre over the floor the waves blur the teeth by little.
+            // Half a decimetre above the floor the waves blur the teeth only a little.
             let of = |out_m: f64| {
                 with(
                     at(&comb(out_m), -1.95),
@@ -277,7 +279,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Mesh.case(
         "a_wall_without_thickness_edge_on",
-        "a shadow of no width",
+        "a shadow of width 0",
         OPEN,
         1e-3,
         |b| {
@@ -327,10 +329,10 @@ fn as_open(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
     Ok(largest_to_mean(&found, &open))
 }
 
-/// Turns the rod out of the lines of the grid, rad around y.
+/// Rotation of the rod away from the lines of the grid, rad around y.
 const TURN: f64 = 0.65;
 
-/// The way of the light of [`pool`]'s sun under flat water.
+/// The direction of the light of [`pool`]'s sun under flat water.
 fn light_under_water() -> DVec3 {
     let to_light = direction_to_light(60_f64.to_radians(), 30_f64.to_radians());
     refract_direction(-to_light, DVec3::Y, 1.333).unwrap_or(DVec3::NEG_Y)
@@ -347,8 +349,8 @@ fn rod_error(bench: &mut Bench<'_>, level_map_texels: u32) -> Result<f64, Failur
     shadow_error(bench, &cuboid(sides_m), shadow_m2, level_map_texels)
 }
 
-/// How far the flux that a mesh a metre under flat water takes from the floor is from that of a shadow of this area. Waves would
-/// only hide the little there is.
+/// Difference between the flux that a mesh a metre under flat water takes from the floor and that of a shadow of this area. Waves would
+/// only hide this small difference.
 fn shadow_error(
     bench: &mut Bench<'_>,
     obj: &str,
@@ -381,7 +383,7 @@ fn shadow_error(
     Ok(((open - shaded) / (open * shadow_m2) - 1.0).abs())
 }
 
-/// Looks over the rim of a box without its upper side: at its bottom, and at the inside of the wall that the sun shines on.
+/// A view over the rim of a box without its upper side, at its bottom and at the inside of the wall that the sun lights.
 fn inside_an_open_box(bench: &mut Bench<'_>) -> Result<f64, Failure> {
     let open: String = cuboid([0.4; 3])
         .lines()
@@ -400,7 +402,7 @@ fn inside_an_open_box(bench: &mut Bench<'_>) -> Result<f64, Failure> {
                 "/objects",
                 json!([{ "mesh": open, "translation_m": [0, -1, 0] }]),
             ),
-            // Under water all of the floor is lit for the mirror over it: of a small one the beams are small.
+            // A camera under water sees the mirror image of the whole floor, so all of it is lit: a small floor has small beams.
             ("/floor/size_m", json!([2, 2])),
             ("/quality/water_cells", json!(512)),
             ("/quality/split_levels", json!(4)),
@@ -502,7 +504,7 @@ fn on_a_reference_plane(bench: &mut Bench<'_>) -> Result<f64, Failure> {
     Ok(error)
 }
 
-/// The same choice with so many planes; `None` where the method has none.
+/// The same choice with another number of planes; `None` where the method has no planes.
 pub(super) fn with_planes(choice: MethodChoice, planes: u32) -> Option<MethodChoice> {
     let quality = Quality {
         method: choice.clone(),

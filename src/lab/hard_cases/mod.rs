@@ -1,15 +1,15 @@
-//! Hard cases: scenes that break caustics renderers, each with what could break and how that would show.
+//! Hard cases: scenes that break caustics renderers, each with what could break and how it would show.
 //!
-//! The suite runs on whatever adapter there is: in the tests (one test a case), and from `caustica hard-cases` on the machine
-//! that matters. Whatever a case checks of its own, every picture in it is finite, made twice with the same bits, and its energy
-//! account closes.
+//! The suite runs on any adapter: in the tests (one test per case), and from `caustica hard-cases` on the machine that matters.
+//! In addition to a case's own check, every picture must be finite, must have the same bits when rendered twice, and its energy
+//! account must close.
 //!
-//! - `case`: what a case is, and what came of it;
-//! - `bench`: rendering with the checks that hold for all;
+//! - `case`: a case and its outcome;
+//! - `bench`: rendering with the checks for all cases;
 //! - `truths`: what pictures are compared with;
-//! - `page`: the suite as a document;
+//! - `page`: the results as a page;
 //! - the families: `light` (and `lamp`), `water`, `place`, `mesh`, `fold`, `camera`, `machine` (with
-//!   `sabotage`: how to harm a device).
+//!   `sabotage`: how to break a device).
 
 mod bench;
 mod camera;
@@ -56,9 +56,9 @@ pub fn find(name: &str) -> Option<&'static Case> {
 /// How a suite is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Frames of the case that makes many, at least 10.
+    /// Frames of the case with many frames, at least 10.
     pub renders: u32,
-    /// Whether nothing else runs in this process: then its memory is the suite's.
+    /// Whether nothing else runs in this process, so that its memory is the suite's.
     pub is_alone: bool,
 }
 
@@ -76,7 +76,7 @@ pub fn run(case: &'static Case, renderer: &mut Renderer) -> Outcome {
     run_with(case, renderer, &mut Truths::default(), Settings::default())
 }
 
-/// Runs a case as the settings say, with references that earlier runs may have left.
+/// Runs a case with these settings, and with references from earlier runs if there are any.
 pub fn run_with(
     case: &'static Case,
     renderer: &mut Renderer,

@@ -1,4 +1,4 @@
-//! The suite as a document: a table for each family, with a thumbnail of each case.
+//! The suite's results as a page: a table for each family, with a thumbnail of each case.
 
 use std::fmt::Write as _;
 
@@ -19,8 +19,8 @@ pub fn markdown(outcomes: &[Outcome], adapter: &str, folder: &str) -> String {
     let _ = writeln!(
         text,
         "{held} of {} cases hold, on {adapter}. Written by `caustica hard-cases`.\n\n\
-         Every picture of every case is finite, was made twice with the same bits, and its energy account closes to 10⁻⁵; the \
-         figure is what the case checks beyond that. Warnings are those that came with its pictures.",
+         Every picture of every case is finite, has the same bits when rendered twice, and its energy account closes to 10⁻⁵. The \
+         figure is the result of the case's own check. Warnings are those of the case's pictures.",
         outcomes.len()
     );
     for family in Family::ALL {
@@ -76,10 +76,10 @@ fn row(outcome: &Outcome, folder: &str) -> String {
     )
 }
 
-/// The thumbnail of a case as PNG, exposed as any picture; `None` where it has none.
+/// The thumbnail of a case as PNG, with the usual exposure; `None` where the case has no picture.
 ///
 /// # Errors
-/// What the encoder refuses.
+/// Errors of the encoder.
 pub fn thumbnail(outcome: &Outcome) -> Option<Result<Vec<u8>, EncodeError>> {
     let frame = outcome.picture.as_ref()?;
     let encoding = Encoding {

@@ -1,4 +1,4 @@
-//! The same scene elsewhere, smaller and larger.
+//! The same scene in another place, smaller and larger.
 
 use serde_json::{Value, json};
 
@@ -7,13 +7,13 @@ use super::case::Family::Place;
 use super::case::{Case, Failure};
 use super::truths::{largest_to_mean, pool, sun, with};
 
-const MOVED: &str = "largest difference from the scene at the origin, to the mean";
-const SCALED: &str = "largest difference from the scene of metres, to the mean";
+const MOVED: &str = "largest difference from the scene at the origin, relative to the mean";
+const SCALED: &str = "largest difference from the scene of ordinary size, relative to the mean";
 
 pub(super) const CASES: &[Case] = &[
     Place.case(
         "moved_by_100_km",
-        "positions in f32 far from the origin",
+        "f32 positions far from the origin",
         MOVED,
         1e-4,
         |b| {
@@ -24,7 +24,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Place.case(
         "lifted_by_100_km",
-        "heights in f32 far from the origin",
+        "f32 heights far from the origin",
         MOVED,
         1e-4,
         |b| {
@@ -35,14 +35,14 @@ pub(super) const CASES: &[Case] = &[
     ),
     Place.case(
         "a_thousandth_of_the_size",
-        "tolerances in metres",
+        "tolerances that are fixed in metres",
         SCALED,
         1e-4,
         |b| scaled(b, 1e-3),
     ),
     Place.case(
         "a_thousand_times_the_size",
-        "tolerances in metres",
+        "tolerances that are fixed in metres",
         SCALED,
         1e-4,
         |b| scaled(b, 1e3),

@@ -1,4 +1,4 @@
-//! Ways to harm a device in the middle of a frame, and how to see that nothing came of it.
+//! Breaks a device in the middle of a frame, and checks that the frame is not affected.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,7 +34,7 @@ fn count_down(queue: &wgpu::Queue, submissions: u32, harm: Box<dyn FnOnce() + Se
     });
 }
 
-/// Asks for more memory than there is: the device reports that it is out of it.
+/// Requests more memory than exists, so that the device reports that it is out of memory.
 pub(super) fn exhaust(device: &wgpu::Device) {
     let limits = device.limits();
     let side = limits.max_texture_dimension_2d;
@@ -43,7 +43,7 @@ pub(super) fn exhaust(device: &wgpu::Device) {
         wgpu::DeviceType::Cpu => 1,
         _ => limits.max_texture_array_layers,
     };
-    // Dropped at once: it never came to be.
+    // Dropped at once: the texture was never created.
     let _ = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("more than there is"),
         size: wgpu::Extent3d {
@@ -60,7 +60,7 @@ pub(super) fn exhaust(device: &wgpu::Device) {
     });
 }
 
-/// How many values of two frames are not the same to the bit; all of them where their layers or sizes differ.
+/// The number of values of two frames that are not bit-equal; all values where their layers or sizes differ.
 pub(super) fn differing_values(a: &Frame, b: &Frame) -> f64 {
     let values = |frame: &Frame| -> usize { frame.layers.values().map(|l| l.data.len()).sum() };
     if !a.layers.keys().eq(b.layers.keys()) || values(a) != values(b) || values(a) == 0 {
@@ -73,7 +73,7 @@ pub(super) fn differing_values(a: &Frame, b: &Frame) -> f64 {
         .count() as f64
 }
 
-/// A renderer whose device goes in the middle of the next frame after `armed` is set.
+/// A renderer whose device is lost in the middle of the next frame after `armed` is set.
 pub(super) struct Saboteur {
     renderer: Renderer,
     armed: Arc<AtomicBool>,

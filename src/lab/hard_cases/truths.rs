@@ -1,4 +1,4 @@
-//! What pictures are compared with: closed forms, the reference, other pictures.
+//! What pictures are compared with: closed forms, the reference, and other pictures.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::reference::closed_form::flat_water_irradiance;
 use crate::reference::{ReferenceSettings, TruthSettings, irradiance_map, truth};
 use crate::scene::{LayerName, Light, ResolvedScene};
 
-/// Reference maps that were computed already, by the hashes of their scenes: the same cases run again need no second one.
+/// Reference maps that were computed already, by the hashes of their scenes, so that repeated cases do not compute them again.
 #[derive(Debug, Default)]
 pub struct Truths(BTreeMap<String, Vec<[f64; 3]>>);
 
@@ -61,7 +61,7 @@ pub(super) fn waves_at(x_m: f64, z_m: f64) -> (f64, DVec3) {
     (height_m, normal_from_slope(slope_x, slope_z))
 }
 
-/// [`pool`] with other values at some JSON pointers; what is not there is added.
+/// [`pool`] with other values at some JSON pointers; missing fields are added.
 pub(super) fn with(mut scene: Value, changes: &[(&str, Value)]) -> Value {
     for (pointer, value) in changes {
         let mut place = &mut scene;
@@ -76,7 +76,7 @@ pub(super) fn with(mut scene: Value, changes: &[(&str, Value)]) -> Value {
     scene
 }
 
-/// Irradiance of all suns together under flat water, so deep, W/m².
+/// Irradiance of all suns together under flat water at the given depth, W/m².
 pub(super) fn flat_irradiance(resolved: &ResolvedScene, depth_m: f64) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for light in &resolved.scene.lights {
@@ -90,8 +90,8 @@ pub(super) fn flat_irradiance(resolved: &ResolvedScene, depth_m: f64) -> [f64; 3
     sum
 }
 
-/// Largest relative error of a map under flat water against the closed form, all suns together. Where no light is due, any is an
-/// error of 1.
+/// Largest relative error of a map under flat water against the closed form, all suns together. Where no light is
+/// expected, any light is an error of 1.
 pub(super) fn flat_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
     let resolved = bench.scene(scene)?;
     let depth_m = resolved.scene.floor.as_ref().map_or(0.0, |f| f.depth_m);
@@ -132,8 +132,8 @@ pub(super) fn reference_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64
         .map_err(|error| Failure::Check(error.to_string()))
 }
 
-/// Relative L1 error of the irradiance of what a view shows against the reference, over the pixels that the reference looks at; 1
-/// where any of them sees nothing.
+/// Relative L1 error of the irradiance in a view against the reference, over the pixels that the reference traces; 1 where any of
+/// them shows nothing.
 pub(super) fn seen_error(bench: &mut Bench<'_>, scene: Value) -> Result<f64, Failure> {
     let resolved = bench.scene(scene)?;
     let settings = TruthSettings {

@@ -1,4 +1,4 @@
-//! Light on ways that are not followed, counted in f64 point by point: what the warnings' figures are compared with.
+//! Light on paths that are not followed, computed in f64 point by point. The warnings' flux is compared with it.
 
 use glam::DVec3;
 
@@ -13,8 +13,8 @@ const SIDE: u32 = 400;
 /// Steps along the shortest wave.
 const STEPS_PER_WAVE: f64 = 500.0;
 
-/// Flux (W) under a sun of 1 W/m² that goes under water and comes out of it again on its way: small steps all the way, until the ray is
-/// below the deepest trough or at the floor.
+/// Flux (W) under a sun of 1 W/m² that enters the water and leaves it again. Each ray is followed in small steps until it is below the
+/// deepest trough or at the floor.
 pub(super) fn flux_leaving_again_w(facts: &SceneFacts) -> f64 {
     let surface = &facts.water.surface;
     let floor_y_m = facts
@@ -26,11 +26,11 @@ pub(super) fn flux_leaving_again_w(facts: &SceneFacts) -> f64 {
     let step_m = surface.shortest_wave_m() / STEPS_PER_WAVE;
     over_window(facts, |start, water, to_light| {
         let up = normal(water);
-        let Some(way) = refract_direction(-to_light, up, facts.water.ior) else {
+        let Some(direction) = refract_direction(-to_light, up, facts.water.ior) else {
             return 0.0;
         };
         let comes_out = (1..)
-            .map(|k| start + way * (step_m * f64::from(k)))
+            .map(|k| start + direction * (step_m * f64::from(k)))
             .take_while(|p| p.y > bottom_m)
             .any(|p| surface.at(p.x, p.z).height_m < p.y);
         if comes_out {
@@ -41,7 +41,7 @@ pub(super) fn flux_leaving_again_w(facts: &SceneFacts) -> f64 {
     })
 }
 
-/// Flux (W) that slopes which look away from a sun of 1 W/m² would have to take back.
+/// Flux (W) that slopes facing away from a sun of 1 W/m² would have to subtract.
 pub(super) fn flux_turned_away_w(facts: &SceneFacts) -> f64 {
     over_window(facts, |_, water, to_light| {
         let up = normal(water);
@@ -49,7 +49,7 @@ pub(super) fn flux_turned_away_w(facts: &SceneFacts) -> f64 {
     })
 }
 
-/// Flux (W) under a sun of 1 W/m² that goes through water which lies below the floor.
+/// Flux (W) under a sun of 1 W/m² through water that lies below the floor.
 pub(super) fn flux_below_floor_w(facts: &SceneFacts) -> f64 {
     let floor_y_m = facts
         .receivers
@@ -65,7 +65,7 @@ pub(super) fn flux_below_floor_w(facts: &SceneFacts) -> f64 {
     })
 }
 
-/// What goes under water where it is `up`, per area of its plan.
+/// Flux that enters water with normal `up`, per horizontal area.
 fn transmitted(facts: &SceneFacts, up: DVec3, to_light: DVec3) -> f64 {
     let cos_i = up.dot(to_light).max(0.0);
     cos_i / up.y * fresnel_transmittance(cos_i, facts.water.ior)

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::bench::{Bench, told_w};
+use super::bench::{Bench, reported_w};
 use super::case::Family::Water;
 use super::case::{Case, Failure};
 use super::truths::{
@@ -13,9 +13,10 @@ use crate::render::RenderError;
 
 const CLOSED_FORM: &str = "worst texel against E cos θ T e^(−cd)";
 const REFERENCE: &str = "relative L1 against the reference";
-const PERIOD: &str = "largest difference of moments whole periods apart, one of them in the first period, to the mean";
-const PHASE: &str = "phases in f32, or too few digits of the time";
-const AGAIN: &str = "rays that would meet the water again, wide drifts, slopes that look away";
+const PERIOD: &str = "largest difference between moments a whole number of periods apart, one of them in the first period, relative to the mean";
+const PHASE: &str = "phases in f32, or too few digits in the time";
+const AGAIN: &str =
+    "rays that would meet the water again, large sideways drift, slopes that face away";
 
 pub(super) const CASES: &[Case] = &[
     Water.case(
@@ -43,8 +44,8 @@ pub(super) const CASES: &[Case] = &[
     }),
     Water.case(
         "steep_waves_are_warned_of",
-        "a silent limit of the model",
-        "0 where `waves_shade_waves` is among the warnings",
+        "a limit of the model without a warning",
+        "0 if the warning `waves_shade_waves` is present",
         0.0,
         |b| {
             b.map(with(steep(5.0), &[("/lights/0", sun(30.0, 0.0))]))?;
@@ -53,8 +54,8 @@ pub(super) const CASES: &[Case] = &[
     ),
     Water.case(
         "light_that_leaves_the_water_again",
-        "a warning that is silent, or says the wrong flux",
-        "largest relative difference of the flux warned of from that of f64 rays; 0 where neither has any",
+        "a missing warning, or one with the wrong flux",
+        "largest relative difference between the warning's flux and that of f64 rays; 0 where neither has any",
         0.02,
         |b| {
             let mut worst_so_far = 0.0_f64;
@@ -64,43 +65,43 @@ pub(super) const CASES: &[Case] = &[
                 let facts = crate::methods::facts(&resolved).map_err(RenderError::from)?;
                 let due_w = flux_leaving_again_w(&facts);
                 let frame = b.render_resolved(&resolved)?;
-                let told_w = told_w(&frame, "light_leaves_water_again");
-                worst_so_far = worst(worst_so_far, (told_w - due_w).abs() / due_w.max(1e-9));
+                let reported_w = reported_w(&frame, "light_leaves_water_again");
+                worst_so_far = worst(worst_so_far, (reported_w - due_w).abs() / due_w.max(1e-9));
             }
             Ok(worst_so_far)
         },
     ),
     Water.case(
         "slopes_that_look_away",
-        "light counted twice without a word",
-        "relative difference of the flux warned of from that of the slopes, by f64",
+        "light counted twice without a warning",
+        "relative difference between the warning's flux and that of the slopes in f64",
         0.01,
         |b| {
             let resolved = b.scene(with(steep(2.0), &[("/lights/0", sun(30.0, 20.0))]))?;
             let facts = crate::methods::facts(&resolved).map_err(RenderError::from)?;
             let due_w = flux_turned_away_w(&facts);
             let frame = b.render_resolved(&resolved)?;
-            Ok((told_w(&frame, "waves_shade_waves") / due_w - 1.0).abs())
+            Ok((reported_w(&frame, "waves_shade_waves") / due_w - 1.0).abs())
         },
     ),
     Water.case(
         "troughs_below_the_floor",
-        "light that enters under the floor and lands on it all the same",
-        "relative difference of the flux warned of from that over the bared floor, by f64; or the share that misses the floor",
+        "light that enters below the floor but still lands on it",
+        "relative difference between the warning's flux and that over the bare floor in f64, or the share that misses the floor",
         0.02,
         |b| {
             let resolved = b.scene(with(steep(0.5), &[("/floor/depth_m", json!(0.05))]))?;
             let facts = crate::methods::facts(&resolved).map_err(RenderError::from)?;
             let due_w = flux_below_floor_w(&facts);
             let frame = b.render_resolved(&resolved)?;
-            let told_w = told_w(&frame, "waves_bare_floor");
+            let reported_w = reported_w(&frame, "waves_bare_floor");
             let missed: f64 = frame.stats.energy.iter().map(|a| a.missed_w[0] / a.emitted_w[0]).sum();
-            Ok(worst((told_w / due_w - 1.0).abs(), missed))
+            Ok(worst((reported_w / due_w - 1.0).abs(), missed))
         },
     ),
     Water.case(
         "floor_at_depth_0",
-        "rays without length",
+        "rays of length 0",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(0))])),
@@ -114,7 +115,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Water.case(
         "floor_at_11000_metres",
-        "positions in f32 far below",
+        "f32 positions at great depth",
         CLOSED_FORM,
         1e-4,
         |b| flat_error(b, with(pool(), &[("/floor/depth_m", json!(11_000))])),
@@ -143,8 +144,8 @@ pub(super) const CASES: &[Case] = &[
     ),
     Water.case(
         "index_1",
-        "waves that must not show at all",
-        "worst texel against an even floor",
+        "waves that must have no effect",
+        "worst texel against an evenly lit floor",
         2e-5,
         |b| {
             let map = b.map(wavy(1.0))?;
@@ -168,8 +169,8 @@ pub(super) const CASES: &[Case] = &[
     }),
     Water.case(
         "index_below_1",
-        "total reflection on the way in",
-        "0 where it is refused at /water/ior",
+        "total reflection of light that enters the water",
+        "0 if the scene is refused at /water/ior",
         0.0,
         |b| b.refused_at(wavy(0.9), "/water/ior"),
     ),
@@ -197,7 +198,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Water.case(
         "absorption_of_a_billionth",
-        "a series of e^x − 1 cut off",
+        "a truncated series of e^x − 1",
         CLOSED_FORM,
         1e-4,
         |b| {
@@ -224,7 +225,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Water.case(
         "scattering_of_1_per_metre",
-        "light that is scattered and in no account",
+        "scattered light that is missing in the account",
         CLOSED_FORM,
         1e-4,
         |b| {
@@ -242,8 +243,8 @@ pub(super) const CASES: &[Case] = &[
     ),
     Water.case(
         "waves_that_cancel",
-        "residues of phases and directions that should be nothing",
-        "largest difference from flat water, to the mean",
+        "residues of phases and directions that should be 0",
+        "largest difference from flat water, relative to the mean",
         2e-5,
         |b| {
             let one = |direction: f64, phase: f64| json!({ "kind": "sine", "amplitude_m": 0.05, "wavelength_m": 0.9, "direction_deg": direction, "phase_deg": phase });
@@ -275,8 +276,8 @@ pub(super) const CASES: &[Case] = &[
     ),
 ];
 
-/// Ripples of a tenth of a micrometre, whose crests focus a metre down, over a map on which they can be told apart; and over one where
-/// they cannot: that is warned of, and as they move light by 0.42 mm no texel of 62.5 mm may gain or lose more than twice that.
+/// Ripples of a tenth of a micrometre, whose crests focus at a depth of a metre, over a map that resolves them, and over one that does
+/// not. The latter has a warning, and as the ripples move light by 0.42 mm, no texel of 62.5 mm may gain or lose more than twice that.
 fn ripples(bench: &mut Bench<'_>) -> Result<f64, Failure> {
     let coarse = with(
         pool(),
@@ -305,7 +306,7 @@ fn ripples(bench: &mut Bench<'_>) -> Result<f64, Failure> {
     }
     if !bench.was_warned_of("waves_undersampled") {
         return Err(Failure::Check(
-            "waves of less than a cell are not warned of".to_owned(),
+            "waves of less than a cell have no warning".to_owned(),
         ));
     }
     Ok(error)
@@ -358,8 +359,8 @@ fn focus(directions_deg: &[f64]) -> Value {
     )
 }
 
-/// Two moments a period apart, and the one of the first period at which the waves stand as they do then: a clock that has lost its last
-/// digits is wrong by the same at both of the others.
+/// Two moments a period apart, and the moment of the first period with the same waves. The third is needed because a clock that has lost
+/// its last digits is wrong by the same amount at the first two.
 fn period(bench: &mut Bench<'_>, time_s: f64) -> Result<f64, Failure> {
     let at = |time_s: f64| {
         let mut waves = waves();

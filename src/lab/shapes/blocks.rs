@@ -1,4 +1,4 @@
-//! What can be built of blocks on a grid of planes, which need not be evenly spaced.
+//! Shapes from blocks on a grid of planes, which need not be evenly spaced.
 
 use std::collections::HashMap;
 
@@ -122,7 +122,7 @@ fn side(cell: [usize; 3], axis: usize, above: bool) -> [[usize; 3]; 4] {
     })
 }
 
-/// So many equal steps.
+/// The given number of equal steps.
 fn even(cells: u32) -> Vec<f64> {
     (0..=cells).map(f64::from).collect()
 }

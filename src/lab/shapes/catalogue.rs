@@ -1,4 +1,4 @@
-//! The catalogue: every shape by name, and the door it shares with uploads.
+//! The catalogue: every shape by name, read in the same way as an upload.
 
 use super::{
     Outline, blocks, height_field, implicit, plants, plates, polyhedra, revolution, stones,

@@ -1,4 +1,4 @@
-//! Surfaces where a function of space vanishes, by marching tetrahedra.
+//! Surfaces where a function of space is 0, by marching tetrahedra.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -245,8 +245,8 @@ fn coral() -> Outline {
 }
 
 /// A branch and what grows from its tip; `name` numbers the branches as the nodes of a ternary tree.
-fn grow(branches: &mut Vec<Branch>, from_m: DVec3, way: DVec3, length_m: f64, name: u32) {
-    let to_m = from_m + length_m * way;
+fn grow(branches: &mut Vec<Branch>, from_m: DVec3, direction: DVec3, length_m: f64, name: u32) {
+    let to_m = from_m + length_m * direction;
     branches.push(Branch {
         from_m,
         to_m,
@@ -255,13 +255,19 @@ fn grow(branches: &mut Vec<Branch>, from_m: DVec3, way: DVec3, length_m: f64, na
     if length_m < 0.2 {
         return;
     }
-    let side = way.any_orthonormal_vector();
-    let other = way.cross(side);
+    let side = direction.any_orthonormal_vector();
+    let other = direction.cross(side);
     for twig in 0..3 {
         let random = |what: u32| noise::unit(60 + what, 3 * name + twig);
         let (sin, cos) = sin_cos((f64::from(twig) + 0.6 * random(0)) / 3.0);
         let spread = 0.45 + 0.45 * random(1);
-        let way = (way + spread * (cos * side + sin * other)).normalize();
-        grow(branches, to_m, way, 0.72 * length_m, 3 * name + twig);
+        let twig_direction = (direction + spread * (cos * side + sin * other)).normalize();
+        grow(
+            branches,
+            to_m,
+            twig_direction,
+            0.72 * length_m,
+            3 * name + twig,
+        );
     }
 }

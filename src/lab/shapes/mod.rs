@@ -1,10 +1,10 @@
-//! Shapes: meshes that formulas make, for experiments, tests and benches; no file is read at run time.
+//! Shapes: meshes from formulas, for experiments, tests and benches; no file is read at run time.
 //!
 //! A [`Shape`] is made by the builder of its family (`polyhedra`, `stones`, `revolution`, `sweep`, `superquadric`, `blocks`,
 //! `implicit`, `height_field`, `plates`, `plants`, `swimmers`, `teapot`) as an [`Outline`]: points and triangles, many of them by
-//! `skin`, a skin over a row of rings. Then `normals` finds shading normals, `text` writes OBJ, and [`Shape::mesh`] reads that as an
-//! upload is read. Numbers are rounded to the micrometre and come of sums, products and square roots only (`turn` for sines,
-//! `noise` for chance), so that a shape has the same id on every machine.
+//! `skin`, a skin over a row of rings. Then `normals` computes shading normals, `text` writes OBJ, and [`Shape::mesh`] reads it
+//! like an upload. Numbers are rounded to the micrometre and computed from sums, products and square roots only (`turn` for sines,
+//! `noise` for random numbers), so that a shape has the same id on every machine.
 //!
 //! | name | triangles | open edges | what |
 //! |---|---:|---:|---|

@@ -33,7 +33,7 @@ pub(super) fn value(seed: u32, p: DVec3) -> f64 {
     mix(along_y(0), along_y(1), w)
 }
 
-/// Sum of so many octaves of [`value`], each at twice the frequency and half the height of the one before.
+/// Sum of the given number of octaves of [`value`], each at twice the frequency and half the height of the one before.
 pub(super) fn octaves(seed: u32, p: DVec3, count: u32) -> f64 {
     let (mut sum, mut scale, mut height) = (0.0, 1.0, 1.0);
     for octave in 0..count {

@@ -12,7 +12,7 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Adds a position; its index.
+    /// Adds a position; returns its index.
     pub(super) fn point(&mut self, p_m: DVec3) -> u32 {
         self.positions_m.push(p_m);
         self.positions_m.len() as u32 - 1
@@ -48,7 +48,7 @@ impl Outline {
         self
     }
 
-    /// Moved by so much.
+    /// Moved by an offset.
     pub(super) fn moved(self, x_m: f64, y_m: f64, z_m: f64) -> Self {
         self.map(|p| p + DVec3::new(x_m, y_m, z_m))
     }

@@ -1,4 +1,4 @@
-//! Thin plates and sheets: what a map from above sees as almost nothing, or as one depth.
+//! Thin plates and sheets, which a map from above shows as almost nothing, or at a single depth.
 
 use glam::DVec3;
 

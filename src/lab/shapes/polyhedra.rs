@@ -105,7 +105,7 @@ pub(super) fn icosahedron() -> Outline {
     Outline { positions_m, faces }.map(DVec3::normalize)
 }
 
-/// A body around the origin with a spike on each face whose tip is so many times as far out as the face.
+/// A body around the origin with a spike on each face. `reach` is the distance of a tip from the origin over that of its face.
 pub(super) fn stellated(body: &Outline, reach: f64) -> Outline {
     let mut outline = Outline {
         positions_m: body.positions_m.clone(),

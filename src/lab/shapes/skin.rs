@@ -1,4 +1,4 @@
-//! A skin over a row of rings: what bodies of revolution, tubes and fish have in common.
+//! A skin over a row of rings: shared by bodies of revolution, tubes and fish.
 
 use glam::DVec3;
 
@@ -13,8 +13,8 @@ pub(super) enum End {
     Point(DVec3),
 }
 
-/// A skin over rings of equally many points that run by the right hand around the way from the first ring to the last;
-/// outside is where the thumb's fingers are.
+/// A skin over rings with equal numbers of points. The points run around the direction from the first ring to the last by the right-hand
+/// rule; then the outside of the skin faces away from that axis.
 pub(super) fn skin(rings: &[Vec<DVec3>], start: End, end: End) -> Outline {
     let mut outline = open(rings);
     let sides = sides(rings);

@@ -1,4 +1,4 @@
-//! Spheres from an icosahedron, and what comes of moving their points in and out.
+//! Spheres from an icosahedron, and shapes made by moving their points in and out.
 
 use std::collections::HashMap;
 
@@ -46,7 +46,7 @@ pub(super) const SHAPES: &[Shape] = &[
     },
 ];
 
-/// An icosahedron whose triangles are quartered so many times, every point on the unit sphere.
+/// An icosahedron whose triangles are quartered the given number of times, every point on the unit sphere.
 fn icosphere(levels: u32) -> Outline {
     let mut sphere = icosahedron();
     for _ in 0..levels {

@@ -76,12 +76,12 @@ fn between(sections: &[Section], t: f64) -> Section {
     })
 }
 
-/// A fin: flat elliptical sections from `root` to `tip`, whose middles bow out against the chord on the way.
+/// A fin: flat elliptical sections from `root` to `tip`, whose middles bow out from the chord.
 #[derive(Clone, Copy, Debug)]
 struct Fin {
     root_m: DVec3,
     tip_m: DVec3,
-    /// How far half-way, m.
+    /// How far at the middle, m.
     bow_m: f64,
     /// From the leading edge to the trailing one, at the root.
     chord_m: DVec3,
@@ -94,14 +94,14 @@ const FIN_THICKNESS: f64 = 0.12;
 
 impl Fin {
     fn outline(&self) -> Outline {
-        let way = self.tip_m - self.root_m;
+        let span_m = self.tip_m - self.root_m;
         let width_m = self.chord_m.length();
         let stations: Vec<_> = (0..self.rings)
             .map(|ring| {
                 let t = f64::from(ring) / f64::from(self.rings);
                 let ahead = self.bow_m * 4.0 * t * (1.0 - t) / width_m;
                 Station {
-                    centre_m: self.root_m + t * way - ahead * self.chord_m,
+                    centre_m: self.root_m + t * span_m - ahead * self.chord_m,
                     across: self.chord_m,
                     // An ellipse's outline: blunt, then fast to the tip.
                     scale: 0.5 * width_m * (1.0 - t * t).sqrt(),

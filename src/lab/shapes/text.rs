@@ -43,7 +43,7 @@ fn steps(p: DVec3, per_unit: f64) -> [i64; 3] {
     p.to_array().map(|x| (x * per_unit).round() as i64)
 }
 
-/// A whole number of steps as a decimal number with so many decimals; there is no negative zero.
+/// A whole number of steps as a decimal number with the given number of decimals; there is no negative zero.
 fn decimal(steps: i64, decimals: u32) -> String {
     let (one, sign) = (10_u64.pow(decimals), if steps < 0 { "-" } else { "" });
     let size = steps.unsigned_abs();

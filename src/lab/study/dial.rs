@@ -7,11 +7,11 @@ use crate::methods;
 use crate::scene::overrides::{self, Field};
 use crate::scene::{Issue, ResolvedScene, Scene, SceneError};
 
-/// Every setting is estimated once and timed without: there is nothing to sweep.
+/// The switch of the estimate: every setting is rendered with it once and timed without it, so it is not swept.
 const NO_DIAL: &str = "estimate_error";
 /// Most values of one dial.
 pub const MOST_VALUES: usize = 32;
-/// Ranges that end at or below this count by one; longer ones double.
+/// Ranges that end at or below this increase by one; longer ones double.
 const COUNTED_TO: u64 = 8;
 
 /// A field of `quality`, or a dial of a method, and the values it takes, in order.
@@ -19,7 +19,7 @@ const COUNTED_TO: u64 = 8;
 pub struct Dial {
     /// Name of the field.
     pub name: String,
-    /// What it is set to, as text: a number, `true`, `false`, or a word.
+    /// Its values as text: numbers, `true`, `false`, or words.
     pub values: Vec<String>,
 }
 
@@ -29,9 +29,9 @@ pub enum DialError {
     /// No field of this name.
     #[error("`{name}` is no dial; accepted: {}", known.join(", "))]
     Unknown {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The known names.
         known: Vec<String>,
     },
     /// Not `name=values`.
@@ -52,7 +52,7 @@ pub enum DialError {
     },
 }
 
-/// All dials there are: the fields of `quality`, but for the switch of the estimate, and the dials of all methods.
+/// All dials: the fields of `quality` except the switch of the estimate, and the dials of all methods.
 pub fn dials() -> Vec<Field> {
     methods::fields()
         .into_iter()
@@ -64,7 +64,7 @@ impl Dial {
     /// A dial with its values.
     ///
     /// # Errors
-    /// [`DialError::Unknown`], [`DialError::Count`]. Whether the values are in range is the scene's to say.
+    /// [`DialError::Unknown`], [`DialError::Count`]. The scene's validation checks whether the values are in range.
     pub fn new(name: &str, values: Vec<String>) -> Result<Self, DialError> {
         let known = dials();
         if !known.iter().any(|field| field.name == name) {
@@ -86,7 +86,7 @@ impl Dial {
     }
 
     /// Reads `water_cells=64..1024` (doubling), `split_levels=0..4` (counting, up to 8) or `name=a,b,c`; `-` and `_` in names
-    /// are alike.
+    /// are the same.
     ///
     /// # Errors
     /// [`DialError`].
@@ -109,12 +109,12 @@ impl Dial {
         Self::new(&name, values)
     }
 
-    /// The dials that say most about a scene: the water's cells always, and what its meshes and its camera bring in.
+    /// The dials that matter most for a scene: always the water's cells, and more if it has meshes or a camera.
     pub fn for_scene(resolved: &ResolvedScene) -> Vec<Self> {
         let mut texts = vec!["water_cells=64..1024"];
         if !resolved.scene.objects.is_empty() {
             texts.push("split_levels=0..6");
-            // Of a map on a mesh it is the size, which the truth shares.
+            // For a map on a mesh it is the size of the map, which the truth shares.
             if !resolved.scene.output.is_object_map() {
                 texts.push("level_map_texels=64..1024");
             }
@@ -154,7 +154,7 @@ fn range(low: &str, high: &str) -> Option<Vec<String>> {
 /// A scene with some dials set.
 #[derive(Clone, Debug)]
 pub enum Setting {
-    /// It can be rendered, as far as can be told before.
+    /// It passes all checks that are possible before rendering.
     Scene(Box<ResolvedScene>),
     /// The method cannot do this, for a reason; other methods may.
     LeftOut(String),
@@ -163,7 +163,7 @@ pub enum Setting {
 /// The scene with some dials set, checked like any other.
 ///
 /// # Errors
-/// What is wrong with a value whatever the method, at its place under `/quality`.
+/// Errors in a value that do not depend on the method, at its place under `/quality`.
 pub fn with_dials(
     resolved: &ResolvedScene,
     dials: &[(String, String)],

@@ -1,4 +1,4 @@
-//! Contact sheet of a sweep: what each setting renders, where it is wrong, and what of that people see.
+//! Contact sheet of a sweep: each setting's render, its errors, and their visibility.
 //!
 //! One column per setting: the render, the signed error (blue: too dark, red: too bright), the ꟻLIP map. The first column has
 //! the truth and the colour bars. All colours mean the same in all columns.
@@ -34,8 +34,8 @@ const CAPTIONS: usize = 44;
 const REMARKS: usize = 66;
 const ROW_GAP: usize = 14;
 
-/// Draws the sheet of one sweep as a PNG file. Of more than [`MOST_COLUMNS`] settings some are shown, evenly from the first to
-/// the last, and the rest is named in a remark.
+/// Draws the sheet of one sweep as a PNG file. If there are more than [`MOST_COLUMNS`] settings, some are shown,
+/// evenly from the first to the last, and a remark lists the rest.
 ///
 /// # Errors
 ///
@@ -118,7 +118,7 @@ fn shown_images<'a>(
     Ok(shown.map(|index| &found[index]).collect())
 }
 
-/// Which of so many settings are shown.
+/// Which of a number of settings are shown.
 fn shown_indices(count: usize) -> Vec<usize> {
     if count <= MOST_COLUMNS {
         return (0..count).collect();
@@ -178,7 +178,7 @@ impl<'a> Column<'a> {
 }
 
 /// End of the signed scale, as a share of the truth's mean: the middle one of the settings' 99th percentiles, rounded up to 1,
-/// 2 or 5. So coarse settings are cut and fine ones still show something.
+/// 2 or 5. So coarse settings are clipped and fine ones are still visible.
 fn scale(columns: &[Column]) -> f64 {
     let mut extents: Vec<f64> = columns.iter().map(Column::extent).collect();
     extents.sort_by(f64::total_cmp);
@@ -197,7 +197,7 @@ fn mean(truth: &LinearImage) -> Result<f64, PlotError> {
     } else if sum.is_finite() {
         Err(MetricError::BlackTruth.into())
     } else {
-        // Says which value.
+        // Reports which value is not finite.
         let all = display_linear(truth, 1.0);
         Err(all.err().unwrap_or(MetricError::BlackTruth).into())
     }
@@ -226,7 +226,7 @@ fn tile<const N: usize>(
     }
 }
 
-/// Where things lie.
+/// The layout of the sheet.
 #[derive(Clone, Copy)]
 struct Layout {
     tile: (usize, usize),

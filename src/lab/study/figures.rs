@@ -1,4 +1,4 @@
-//! All figures of one image against the truth.
+//! All error measures of one image against the truth.
 
 use super::study::ErrorFigures;
 use crate::accuracy::LinearImage;
@@ -9,8 +9,8 @@ use crate::accuracy::metrics::{MetricError, percentile_error, relative_l1, rmse,
 
 /// Measures `image` against `truth`.
 ///
-/// - `compared`: one per pixel, row by row; only what it marks counts. The rest is black in both pictures, so that it shows no
-///   difference to its neighbours either, and may hold anything.
+/// - `compared`: one per pixel, row by row; only marked pixels are compared. The others are black in both pictures, so that they
+///   add no difference to their neighbours, and may hold any value.
 /// - `shadow_edge`: one per pixel, the neighbourhood of a mesh's shadow edge; [`ErrorFigures::shadow_edge_share`] is the share
 ///   of Σ|E − truth| inside, 0 where there is no error at all.
 /// - `white_w_m2`: irradiance of a dry horizontal surface, W/m², for the pictures ([`crate::accuracy::display`]).
@@ -39,7 +39,7 @@ pub fn error_figures(
         return Err(MetricError::NothingCompared);
     }
 
-    // 1. Numbers: what is compared, and nothing else.
+    // 1. Numbers: the compared pixels only.
     let (values, true_values) = (picked(image, compared), picked(truth, compared));
     let mut figures = ErrorFigures {
         relative_l1: relative_l1(&values, &true_values)?,

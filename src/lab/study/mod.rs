@@ -1,9 +1,8 @@
 //! Studies: error against time.
 //!
-//! `dial` says what may be swept, `sweep` renders, compares and times each setting, `study` holds the results. `figures` has all
-//! metrics of one image, `order` how fast the error falls with a dial, `pareto` the settings that no other beats. For people: `plot`
-//! (curves), `error_images` (contact sheets) and `report` (JSON, CSV, Markdown and the folder with everything); `words` writes
-//! numbers.
+//! `dial` lists what can be swept, `sweep` renders, compares and times each setting, `study` holds the results. `figures` computes all
+//! metrics of one image, `order` the order of convergence, `pareto` the Pareto front. For people: `plot` (curves), `error_images`
+//! (contact sheets) and `report` (JSON, CSV, Markdown and the folder with all files); `words` formats numbers.
 
 mod colour_map;
 pub mod dial;

@@ -63,7 +63,7 @@ pub fn dial_number(sweep: &Sweep, point: &Point) -> Option<f64> {
     (point.dials.len() == 1 && value > 0.0).then_some(value)
 }
 
-/// What single precision leaves: errors below it do not converge.
+/// Errors from single precision: below this they do not converge.
 const ROUNDING: f64 = 1e-5;
 
 /// Fits a power law by least squares of the logarithms, to the settings whose error is at least [`TRUTH_MARGIN`] times the
@@ -87,7 +87,7 @@ pub fn fit_levels(sweep: &Sweep, truth_relative_error: f64) -> Option<LevelFit> 
     })
 }
 
-/// The law of a number, above 0, that stands for each point.
+/// Fits the law to a number, above 0, for each point.
 fn power_law(
     sweep: &Sweep,
     truth_relative_error: f64,

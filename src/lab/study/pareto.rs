@@ -1,4 +1,4 @@
-//! The Pareto front: the settings that nothing beats.
+//! The Pareto front: the settings that no other setting beats.
 
 use super::study::{Point, Study};
 

@@ -1,12 +1,12 @@
-//! Maps made to fit a tile: small ones grow by whole factors, so that each texel stays a square; large ones shrink by whole
-//! factors, as means.
+//! Resizes maps to fit a tile: small ones are enlarged by whole factors, so that each texel stays a square; large ones are averaged by
+//! whole factors.
 
 /// How a map becomes a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fit {
-    /// Each value becomes a square of so many pixels.
+    /// Each value becomes a square of pixels; the number along a side.
     Grow(usize),
-    /// Each square of so many values becomes a pixel; fewer at the far edges.
+    /// Each square of values becomes a pixel; the number along a side. Squares at the far edges have fewer values.
     Shrink(usize),
 }
 

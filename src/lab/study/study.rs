@@ -47,7 +47,7 @@ pub struct TruthFigures {
     pub seconds: f64,
     /// Whether it was read from the disk.
     pub from_disk: bool,
-    /// Share of the compared values that lie within two texels (of a view: pixels) of a mesh's shadow edge; absent where no mesh shades
+    /// Share of the compared values that lie within two texels (for a view: pixels) of a mesh's shadow edge; absent where no mesh shades
     /// the map.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shadow_edge_area: Option<f64>,
@@ -64,7 +64,7 @@ pub struct Sweep {
     /// times the truth's; absent where the dial is no number or counts halvings, or fewer than two settings remain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<f64>,
-    /// Of a dial that counts halvings (`split_levels`), in place of an order: the factor by which the error falls per level, 0 included.
+    /// For a dial that counts halvings (`split_levels`), instead of an order: the factor by which the error falls per level, 0 included.
     /// Fitted to the same settings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub factor_per_level: Option<f64>,
@@ -81,7 +81,7 @@ pub struct Point {
     pub cost: CostFigures,
     /// Whether no other setting of the study is both faster and nearer to the truth.
     pub on_pareto_front: bool,
-    /// What the render warned of.
+    /// Warnings of the render.
     pub warnings: Vec<Warning>,
 }
 
@@ -100,10 +100,10 @@ pub struct ErrorFigures {
     pub flip: f64,
     /// Mean distance in CIE Luv of the maps shown as pictures (Tipprasert 2006, eq. 2-9).
     pub luv_distance: f64,
-    /// Share of the L1 error within two texels (of a view: pixels) of a mesh's shadow edge; absent where no mesh shades the map.
+    /// Share of the L1 error within two texels (for a view: pixels) of a mesh's shadow edge; absent where no mesh shades the map.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shadow_edge_share: Option<f64>,
-    /// What the render itself estimated its relative L1 error to be.
+    /// The render's own estimate of its relative L1 error.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub estimated: Option<f64>,
 }

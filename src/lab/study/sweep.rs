@@ -22,12 +22,12 @@ use crate::tuning::ladder;
 pub const MOST_SETTINGS: usize = 64;
 /// Most values (texels or pixels, all settings together) that a study holds.
 pub const MOST_COMPARED: usize = 32_000_000;
-/// Texels, of a view pixels, around a shadow's edge whose error is told apart.
+/// Distance from a shadow's edge, in texels (for a view, pixels), within which the error is reported separately.
 pub const SHADOW_EDGE_TEXELS: u32 = 2;
 
-/// Timed runs after which a setting that takes long has been timed enough.
+/// Timed runs of a slow setting.
 const FEWEST_RUNS: usize = 3;
-/// What long is.
+/// Time above which a setting is slow.
 const LONG_ENOUGH: Duration = Duration::from_secs(1);
 
 /// What to sweep.
@@ -35,7 +35,7 @@ const LONG_ENOUGH: Duration = Duration::from_secs(1);
 pub struct SweepSettings {
     /// The dials.
     pub dials: Vec<Dial>,
-    /// All combinations of the dials' values, instead of one dial at a time with the others as the scene has them.
+    /// Sweep all combinations of the dials' values, instead of one dial at a time with the others as in the scene.
     pub grid: bool,
     /// Timed runs of each setting, after one that warms up, 1 …; of settings that take over a second only three.
     pub runs: u32,
@@ -61,35 +61,35 @@ pub enum StudyError<E: std::error::Error> {
     /// Images cannot be compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
-    /// Every setting was left out.
+    /// Every setting was skipped.
     #[error("no setting can be rendered: {0}")]
     NothingLeft(String),
     /// A render failed for good.
     #[error("{0}")]
     Render(E),
-    /// Nobody waits any more.
+    /// The caller cancelled.
     #[error("cancelled")]
     Cancelled,
 }
 
-/// What a render that failed means for the study.
+/// The consequence of a failed render for the study.
 #[derive(Debug)]
 pub enum Refusal<E> {
-    /// This setting cannot be rendered (too much memory): it is left out, and the study says so.
+    /// This setting cannot be rendered (too much memory). It is skipped, and the study reports it.
     Setting(E),
-    /// Nothing can be.
+    /// No setting can be rendered.
     All(E),
 }
 
 /// A renderer, wherever it is.
 pub type Render<'a, E> = dyn FnMut(ResolvedScene) -> Result<Frame, Refusal<E>> + 'a;
 
-/// Hears of progress: settings done, settings in all, what is being done. Returns whether to go on.
+/// Receives progress: settings done, all settings, current work. Returns whether to continue.
 pub type Progress<'a> = dyn FnMut(usize, usize, &str) -> bool + 'a;
 
 /// Renders, compares and times every setting.
 ///
-/// The first run of a setting warms up, gives the image and the frame's own estimate of its error; the timed ones do without the
+/// The first run of a setting warms up, and gives the image and the frame's estimate of its own error. The timed runs omit the
 /// estimate.
 ///
 /// # Errors
@@ -186,7 +186,7 @@ pub fn run_study<E: std::error::Error>(
                 Err(Refusal::All(error)) => return Err(StudyError::Render(error)),
             }
         }
-        // A sweep all of whose settings were left out has nothing to show; the warnings say so.
+        // A sweep is dropped if all its settings were skipped; the warnings report it.
         if !sweep.points.is_empty() {
             study.sweeps.push(sweep);
             images.points.push(sweep_images);
@@ -202,7 +202,7 @@ pub fn run_study<E: std::error::Error>(
     Ok((study, images))
 }
 
-/// What [`run_study`] refuses before it spends any time, for those who have a truth to compute first.
+/// Checks that [`run_study`] makes before it renders, for callers that have to compute a truth first.
 ///
 /// # Errors
 /// [`StudyError::Scene`] where a dial's value is not accepted, [`StudyError::TooMany`], [`StudyError::NothingLeft`] where no method can do
@@ -259,7 +259,7 @@ fn scenes_of<E: std::error::Error>(
 /// Refuses to sweep a dial that the program would choose itself: every setting would be the same.
 fn refuse_overruled(scene: &ResolvedScene, dials: &[(String, String)]) -> Result<(), SceneError> {
     let quality = &scene.scene.quality;
-    let wish = match (quality.target_error, quality.time_budget_ms) {
+    let target = match (quality.target_error, quality.time_budget_ms) {
         (Some(_), _) => "target_error",
         (_, Some(_)) => "time_budget_ms",
         _ => return Ok(()),
@@ -268,9 +268,9 @@ fn refuse_overruled(scene: &ResolvedScene, dials: &[(String, String)]) -> Result
     match dials.iter().find(is_chosen) {
         None => Ok(()),
         Some((name, _)) => Err(Issue::invalid(
-            format!("/quality/{wish}"),
+            format!("/quality/{target}"),
             format!("with it the program chooses {name} itself, so there is nothing to sweep"),
-            format!("no {wish}, or sweeps of {wish} itself"),
+            format!("no {target}, or sweeps of {target} itself"),
         )
         .into()),
     }
@@ -347,7 +347,7 @@ fn measure<E>(
     let started = Instant::now();
     while costs.len() < runs.max(1) as usize {
         costs.push(render(plain.clone())?.stats);
-        // Slow frames spread little: a few runs tell.
+        // The times of slow frames vary little, so a few runs are enough.
         if costs.len() >= FEWEST_RUNS && started.elapsed() > LONG_ENOUGH {
             break;
         }
@@ -355,7 +355,7 @@ fn measure<E>(
     Ok((frame, costs))
 }
 
-/// The values of a frame that stand beside the truth's.
+/// The values of a frame that are compared with the truth's.
 fn compared_image(frame: &Frame, truth: &Truth) -> Result<LinearImage, MetricError> {
     let is_map = truth.kind != TruthKind::View;
     if is_map && (frame.width, frame.height) != (truth.width, truth.height) {
@@ -443,7 +443,7 @@ fn cost_figures(runs: &[Stats]) -> CostFigures {
 }
 
 impl SpreadMs {
-    /// Median, smallest and largest; `None` of nothing.
+    /// Median, smallest and largest; `None` without values.
     pub fn of(mut runs: Vec<f64>) -> Option<Self> {
         runs.sort_by(f64::total_cmp);
         let (min, max) = (*runs.first()?, *runs.last()?);

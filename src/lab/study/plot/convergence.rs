@@ -61,7 +61,7 @@ pub fn convergence(study: &Study, sweep_index: usize) -> Result<Plot, PlotError>
 /// Where a dial's values lie.
 enum DialAxis {
     Numbers(LogAxis),
-    /// One column for each of so many settings.
+    /// One column per setting; the number of settings.
     Words(usize),
 }
 

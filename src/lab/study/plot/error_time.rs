@@ -1,4 +1,4 @@
-//! Error against time: what each setting buys for its milliseconds.
+//! Error against time of each setting.
 
 use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -19,7 +19,7 @@ use crate::lab::study::words;
 /// Draws the relative L1 error over the median time of every setting of all sweeps, on logarithmic axes: whiskers from the
 /// fastest to the slowest run, the Pareto front as a line, the truth's own error dashed.
 ///
-/// An error of 0 is drawn at a tenth of the truth's own error, and said so.
+/// An error of 0 is drawn at a tenth of the truth's own error, with a remark.
 ///
 /// # Errors
 ///
@@ -126,7 +126,7 @@ impl ErrorTime<'_> {
         Ok(())
     }
 
-    /// Writes the dials' values beside the marks; returns how many found no room.
+    /// Writes the dials' values beside the marks; returns the number of marks without room for a label.
     fn draw_labels<DB: DrawingBackend>(
         &self,
         canvas: &mut Canvas<'_, DB>,

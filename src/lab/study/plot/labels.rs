@@ -1,4 +1,4 @@
-//! Keeps labels apart: each goes where it hides least.
+//! Places labels without overlap: each goes where it hides least.
 
 use super::canvas::Spot;
 

@@ -1,4 +1,4 @@
-//! Lines over linear axes from 0: how a figure grows with a dial.
+//! Lines over linear axes from 0: how a value grows with a dial.
 
 use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::{HPos, VPos};

@@ -1,4 +1,4 @@
-//! Markers: shape and colour tell sweeps apart, so that either alone is enough.
+//! Markers: both shape and colour distinguish sweeps, so that either alone is enough.
 
 use plotters::prelude::DrawingBackend;
 use plotters::style::RGBColor;

@@ -1,8 +1,8 @@
 //! Curves of a study as SVG and PNG, both from one drawing routine.
 //!
-//! `error_time`, `convergence` and `lines` say what is drawn. They draw on a `canvas` (any backend), on a `frame` of axes (`axis`) with
-//! a `legend`; `labels` keeps texts apart, `marker` and `palette` tell sweeps apart, `font` holds the one font, `output` makes
-//! the files, `error` says why there is none.
+//! `error_time`, `convergence` and `lines` are the plots. They draw on a `canvas` (any backend), on a `frame` of axes (`axis`) with
+//! a `legend`; `labels` places texts without overlap, `marker` and `palette` distinguish sweeps, `font` holds the font, `output` makes
+//! the files, `error` has the errors.
 
 mod axis;
 pub(super) mod canvas;

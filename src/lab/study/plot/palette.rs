@@ -1,4 +1,4 @@
-//! Colours. Sweeps: Okabe and Ito, "Color Universal Design" (2008), which people with any kind of colour vision tell apart;
+//! Colours. Sweeps: Okabe and Ito, "Color Universal Design" (2008), which people with any kind of colour vision can distinguish;
 //! without its black (used for the front) and yellow (too pale for lines on white).
 
 use plotters::style::RGBColor;

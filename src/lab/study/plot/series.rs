@@ -1,4 +1,4 @@
-//! What is drawn of each setting: figures checked, and zeros moved to where a logarithmic axis can show them.
+//! The values that are drawn of each setting, checked, with zeros moved to where a logarithmic axis can show them.
 
 use super::error::PlotError;
 use crate::lab::study::order::dial_number;
@@ -100,7 +100,7 @@ fn check(what: &'static str, setting: &str, value: f64) -> Result<(), PlotError>
     }
 }
 
-/// What must be said when errors of 0 were moved.
+/// The remark for errors of 0 that were moved.
 pub(super) fn moved_remark(marks: &[Mark], truth_error: f64) -> Option<String> {
     let moved = marks.iter().any(|mark| mark.moved);
     let of = if truth_error > 0.0 {

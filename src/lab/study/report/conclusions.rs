@@ -1,14 +1,14 @@
-//! What the figures of a sweep say, in plain sentences.
+//! Describes the results of a sweep in sentences.
 
 use crate::lab::study::order::{TRUTH_MARGIN, dial_number};
 use crate::lab::study::study::{Point, SpreadMs, Study, Sweep};
 use crate::lab::study::words::{ms, percent, setting, significant};
 
-/// A change of less than this factor is none.
+/// A change by less than this factor counts as no change.
 const SAME: f64 = 1.05;
 
-/// Sentences on one sweep: what each step of the dial buys, where the truth hides the gain, the order, and which settings are
-/// worth their time. Words and combinations are compared by their extremes.
+/// Sentences about one sweep: the gain of each step of the dial, where the truth's own error hides the gain, the order, and which
+/// settings are worth their time. For words and combinations only the extremes are compared.
 pub fn conclusions(study: &Study, sweep: &Sweep) -> Vec<String> {
     if sweep.points.is_empty() {
         return vec!["No setting was measured.".to_owned()];
@@ -27,7 +27,7 @@ pub fn conclusions(study: &Study, sweep: &Sweep) -> Vec<String> {
         sentences.push(of_order(order));
     }
     if let Some(factor) = sweep.factor_per_level {
-        sentences.push(format!("Each level more {}.", effect_of(factor)));
+        sentences.push(format!("Each further level {}.", effect_of(factor)));
     }
     sentences.push(of_front(sweep));
     sentences
@@ -38,7 +38,7 @@ fn is_hidden(study: &Study, point: &Point) -> bool {
     point.error.relative_l1 < TRUTH_MARGIN * study.truth.relative_error
 }
 
-/// What each step buys, up to the first setting that the truth hides.
+/// The gain of each step, up to the first setting whose gain the truth's own error hides.
 fn steps(study: &Study, sweep: &Sweep) -> Vec<String> {
     let mut points: Vec<&Point> = sweep.points.iter().collect();
     let dial = |point: &&Point| dial_number(sweep, point).unwrap_or(0.0);
@@ -87,7 +87,7 @@ fn extremes(sweep: &Sweep) -> Vec<String> {
         )];
     }
     vec![format!(
-        "The fastest is {}, the nearest to the truth {}: from the one to the other the error {} and the time {}.",
+        "The fastest is {}, the nearest to the truth {}: from the first to the second the error {} and the time {}.",
         described(sweep, fastest),
         described(sweep, nearest),
         change(fastest.error.relative_l1, nearest.error.relative_l1),
@@ -112,14 +112,14 @@ fn of_order(order: f64) -> String {
     )
 }
 
-/// What a step does that divides the error by `factor`.
+/// Describes a step that divides the error by `factor`.
 fn effect_of(factor: f64) -> String {
     if factor > SAME {
         format!("divides the error by {}", significant(factor, 2))
     } else if factor < 1.0 / SAME {
         format!("multiplies the error by {}", significant(1.0 / factor, 2))
     } else {
-        "leaves the error as it is".to_owned()
+        "leaves the error unchanged".to_owned()
     }
 }
 
@@ -164,7 +164,7 @@ fn change(from: f64, to: f64) -> String {
     }
 }
 
-/// Times whose runs overlap are not told apart.
+/// Times whose runs overlap count as equal.
 fn time_change(from: SpreadMs, to: SpreadMs) -> String {
     if from.min <= to.max && to.min <= from.max {
         "hardly changes (their runs overlap)".to_owned()

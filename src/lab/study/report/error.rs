@@ -7,7 +7,7 @@ use crate::lab::study::plot::PlotError;
 /// Why there is no report.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// A figure is NaN or infinite, which JSON cannot say.
+    /// A figure is NaN or infinite, which JSON cannot represent.
     #[error("the figure at {pointer} of the study is not finite; all figures must be")]
     NotFinite {
         /// JSON pointer into the study.

@@ -1,6 +1,6 @@
-//! The words of the report, for someone who has not seen the program.
+//! The report's glossary, for readers who do not know the program.
 
-/// Word and explanation.
+/// Term and explanation.
 pub(super) const GLOSSARY: [(&str, &str); 14] = [
     (
         "dial",
@@ -8,7 +8,7 @@ pub(super) const GLOSSARY: [(&str, &str); 14] = [
     ),
     (
         "truth",
-        "the same scene traced ray by ray in double precision by another algorithm; its own error is measured by comparing two independent halves of its rays, and no error much below it can be told",
+        "the same scene traced ray by ray in double precision by an independent algorithm; its own error is measured by comparing two independent halves of its rays, and errors much below it cannot be measured",
     ),
     (
         "L1",
@@ -16,7 +16,7 @@ pub(super) const GLOSSARY: [(&str, &str); 14] = [
     ),
     (
         "p99",
-        "99 % of all values are nearer to the truth than this, in per cent of the truth's mean",
+        "99 % of all values differ from the truth by less than this, in per cent of the truth's mean",
     ),
     (
         "FLIP",
@@ -32,11 +32,11 @@ pub(super) const GLOSSARY: [(&str, &str); 14] = [
     ),
     (
         "at shadow edges",
-        "share of the L1 error that lies within two texels (of a view: pixels) of the edge of a mesh's shadow",
+        "share of the L1 error within two texels (for a view: pixels) of the edge of a mesh's shadow",
     ),
     (
         "estimate",
-        "the L1 error that the render expected of itself, without knowing the truth",
+        "the render's estimate of its own L1 error, made without the truth",
     ),
     (
         "time",
@@ -52,7 +52,7 @@ pub(super) const GLOSSARY: [(&str, &str); 14] = [
     ),
     (
         "Pareto front (★)",
-        "the settings that nothing beats: whatever is faster errs more, whatever errs less is slower",
+        "the best settings: every faster setting has a larger error, and every more accurate setting is slower",
     ),
     (
         "signed error pictures",

@@ -1,4 +1,4 @@
-//! JSON: the study as it is.
+//! The study as JSON.
 
 use serde_json::Value;
 
@@ -19,7 +19,7 @@ pub fn to_json(study: &Study) -> Result<String, ReportError> {
     Ok(text + "\n")
 }
 
-/// Where a number became `null`: absent figures are left out, so nothing else is `null` but a dial's own value.
+/// Where a number became `null`: absent values are omitted, so only a dial's own value can be `null`.
 fn null_in(value: &Value, pointer: &str) -> Option<String> {
     match value {
         Value::Null => Some(pointer.to_owned()),

@@ -1,4 +1,4 @@
-//! Markdown: the study for someone who has not seen the program.
+//! The study as Markdown, for readers who do not know the program.
 
 use super::conclusions::conclusions;
 use super::csv::passes;
@@ -7,7 +7,7 @@ use super::tables::{escaped, figures, pass_times};
 use crate::lab::study::study::{Study, Sweep};
 use crate::lab::study::words::{percent, significant, thousands};
 
-/// Where the pictures and the other files are, as the Markdown file sees them; what is absent is not linked.
+/// Paths of the pictures and the other files, relative to the Markdown file; absent ones are not linked.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReportLinks {
     /// Error against time.
@@ -76,7 +76,7 @@ fn heading(study: &Study) -> String {
     );
     let (adapter, truth) = (&study.adapter, &study.truth);
     let software = if adapter.software {
-        ", a CPU that stands in for a GPU"
+        ", a CPU instead of a GPU"
     } else {
         ""
     };
@@ -109,7 +109,7 @@ fn heading(study: &Study) -> String {
     }
     if let Some(area) = truth.shadow_edge_area {
         text += &format!(
-            "- shadow edges: {} of the compared values lie within two texels (of a view: pixels) of one\n",
+            "- shadow edges: {} of the compared values lie within two texels (for a view: pixels) of one\n",
             percent(area)
         );
     }
@@ -149,7 +149,7 @@ fn section(sweep: &Sweep, links: &SweepLinks) -> String {
     }
     let pictures = [
         ("Error over the dial", &links.convergence),
-        ("Where each setting errs", &links.errors),
+        ("Error images of each setting", &links.errors),
     ];
     for (what, link) in pictures {
         if let Some(link) = link {
@@ -159,7 +159,7 @@ fn section(sweep: &Sweep, links: &SweepLinks) -> String {
     text + &point_warnings(sweep)
 }
 
-/// What single renders warned of, each once, with how many settings it concerns.
+/// The warnings of the renders, each once, with the number of affected settings.
 fn point_warnings(sweep: &Sweep) -> String {
     let mut found: Vec<(&str, usize)> = Vec::new();
     for warning in sweep.points.iter().flat_map(|point| &point.warnings) {
@@ -171,7 +171,7 @@ fn point_warnings(sweep: &Sweep) -> String {
     if found.is_empty() {
         return String::new();
     }
-    let mut text = "\nThe renders warned:\n\n".to_owned();
+    let mut text = "\nWarnings of the renders:\n\n".to_owned();
     for (message, count) in found {
         text += &format!("- {} ({count}×)\n", escaped(message));
     }
@@ -192,7 +192,7 @@ fn warnings(study: &Study) -> String {
 
 fn files(links: &ReportLinks) -> String {
     let all = [
-        ("JSON, with all figures", &links.json),
+        ("JSON, with all values", &links.json),
         ("CSV, one row per setting", &links.csv),
     ];
     let lines: String = all

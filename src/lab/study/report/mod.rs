@@ -1,7 +1,7 @@
 //! A study as files.
 //!
-//! `json` and `csv` are for programs, `markdown` for people: it builds on `tables`, draws `conclusions` from the figures and
-//! explains the words in a `glossary`. `write` fills a folder with all of them and the pictures. `error` says what went wrong.
+//! `json` and `csv` are for programs, `markdown` for people. The latter uses `tables`, states `conclusions` and explains its terms
+//! in a `glossary`. `write` fills a folder with all of them and the pictures. `error` says what went wrong.
 
 mod conclusions;
 mod csv;

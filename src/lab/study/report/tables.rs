@@ -6,7 +6,7 @@ use crate::lab::study::words::{
     mib, ms, named_setting, percent, setting, signed_percent, significant, spread,
 };
 
-/// Text that Markdown leaves as it is.
+/// Escapes text for Markdown.
 pub(super) fn escaped(text: &str) -> String {
     let mut out = String::new();
     for character in text.chars() {
@@ -34,7 +34,7 @@ pub(super) fn table(header: &[String], rows: &[Vec<String>]) -> String {
     line(header) + &line(&rule) + &body
 }
 
-/// Error and cost of each setting of a sweep. Columns that no setting fills are left out.
+/// Error and cost of each setting of a sweep. Empty columns are omitted.
 pub(super) fn figures(sweep: &Sweep) -> String {
     let any = |filled: fn(&Point) -> bool| sweep.points.iter().any(filled);
     let edges = any(|point| point.error.shadow_edge_share.is_some());

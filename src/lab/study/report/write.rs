@@ -1,4 +1,4 @@
-//! A folder with everything of a study.
+//! Writes all files of a study into a folder.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -14,10 +14,10 @@ use crate::lab::study::plot::{convergence, error_against_time};
 use crate::lab::study::study::{Study, StudyImages};
 
 /// Writes `study.json`, `study.csv`, `study.md`, `error_time.svg` and `.png`, and for each sweep `convergence_<dial>.svg` and
-/// `.png` and `errors_<dial>.png` into `folder`, which is made if need be. Returns their paths, the report first.
+/// `.png` and `errors_<dial>.png` into `folder`, which is created if needed. Returns their paths, the report first.
 ///
-/// Everything is drawn before anything is written, and written aside before anything is moved to its place: a failure leaves
-/// the files of an earlier study as they were. Pictures of nothing (a sweep without settings) are left out.
+/// Everything is drawn before anything is written, and written to temporary files before anything is moved to its place, so a failure
+/// leaves the files of an earlier study unchanged. A sweep without settings has no pictures.
 ///
 /// # Errors
 ///
@@ -65,7 +65,7 @@ pub fn write_study(
     write_all(folder, &files)
 }
 
-/// A name for each sweep that any file system takes, all different: `beams`, `beams_x_steps`, `beams_2`.
+/// A distinct name for each sweep that is valid in any file system: `beams`, `beams_x_steps`, `beams_2`.
 fn file_names(study: &Study) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for sweep in &study.sweeps {
@@ -91,7 +91,7 @@ fn file_names(study: &Study) -> Vec<String> {
     names
 }
 
-/// Writes all files aside, then moves them to their places.
+/// Writes all files under temporary names, then moves them to their places.
 fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>, ReportError> {
     let failed = |path: &Path, reason: io::Error| ReportError::Write {
         path: path.to_owned(),
@@ -124,7 +124,7 @@ fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>,
     }
     if let Err(error) = result {
         for (aside, _) in &moves {
-            // Moved already, or never made.
+            // Moved already, or never created.
             let _ = fs::remove_file(aside);
         }
         return Err(error);

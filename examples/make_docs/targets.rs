@@ -1,4 +1,4 @@
-//! `quality.target_error` put to the test: is the wish granted, and at what price?
+//! Measures `quality.target_error`: whether the true error stays under the target, and how long the frame takes.
 
 use std::error::Error;
 
@@ -11,34 +11,34 @@ use caustica::scene::ResolvedScene;
 use caustica::stats::ChosenDials;
 use tokio_util::sync::CancellationToken;
 
-/// Relative L1 errors that are asked for.
+/// Target errors, relative L1.
 pub(crate) const TARGETS: [f64; 4] = [0.05, 0.02, 0.01, 0.003];
 
-/// What came of a wish.
+/// The outcome for one target.
 #[derive(Debug)]
-pub(crate) struct Wish {
+pub(crate) struct Target {
     pub target: f64,
     pub chosen: ChosenDials,
     /// True relative L1 error.
     pub error: f64,
     /// Median time of a frame with the chosen dials, ms.
     pub frame_ms: f64,
-    /// Looks and choice, ms.
+    /// Trial renders and choice, ms.
     pub choosing_ms: f64,
 }
 
-/// Asks for each of [`TARGETS`].
-pub(crate) fn grant(
+/// Renders the scene with each of [`TARGETS`].
+pub(crate) fn measure(
     renderer: &mut Renderer,
     resolved: &ResolvedScene,
     truth: &Truth,
     runs: u32,
-) -> Result<Vec<Wish>, Box<dyn Error>> {
-    let mut wishes = Vec::new();
+) -> Result<Vec<Target>, Box<dyn Error>> {
+    let mut measured = Vec::new();
     for target in TARGETS {
         let mut asking = resolved.clone();
         asking.scene.quality.target_error = Some(target);
-        // The second time finds pipelines and level maps.
+        // The first render compiles pipelines and builds level maps; the second is measured.
         renderer.render(&asking, &CancellationToken::new())?;
         let stats = renderer.render(&asking, &CancellationToken::new())?.stats;
         let chosen = stats
@@ -79,7 +79,7 @@ pub(crate) fn grant(
             chosen.predicted_ms,
             chosen.reason,
         );
-        wishes.push(Wish {
+        measured.push(Target {
             target,
             error: point.error.relative_l1,
             frame_ms: point.cost.wall_ms.median,
@@ -87,5 +87,5 @@ pub(crate) fn grant(
             chosen,
         });
     }
-    Ok(wishes)
+    Ok(measured)
 }
