@@ -1,5 +1,5 @@
-# The service in a container. It runs on a GPU where the container runtime mounts its driver, else on the software driver
-# inside.
+# The service in a container. It runs on a GPU if the container runtime mounts its driver, else on the software driver in
+# the image.
 #
 #   docker build -t caustica .
 #   docker run --rm -p 8080:8080 caustica
@@ -24,7 +24,7 @@ USER caustica
 WORKDIR /home/caustica
 
 # Vulkan needs `graphics`; setting the variable replaces NVIDIA's default, so all three are named.
-# Mesa's device selection looks for a display and prints errors where there is none.
+# Mesa's device selection prints errors if there is no display, so it is switched off.
 ENV NVIDIA_DRIVER_CAPABILITIES=compute,utility,graphics \
     NODEVICE_SELECT=1 \
     CAUSTICA_LISTEN=0.0.0.0:8080

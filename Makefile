@@ -1,11 +1,11 @@
-# Caustica: what to type. Everything is built in release mode: there is one profile, so nothing is compiled twice.
+# Commands of Caustica. Everything is built in release mode, so that nothing is compiled twice.
 
 CARGO ?= cargo
 CARGO_TARGET_DIR ?= target
 PROGRAM := $(CARGO_TARGET_DIR)/release/caustica
 PICTURE := out/teapot_pool.png
 
-# Without a session to look for a display in, Mesa's device selection prints errors at every start; it has nothing to select.
+# Without a session, Mesa's device selection finds no display and prints errors at every start. It is not needed, so switch it off.
 ifndef XDG_RUNTIME_DIR
 export NODEVICE_SELECT ?= 1
 endif
@@ -23,7 +23,7 @@ demo: build
 build: deps
 	$(CARGO) build --release --locked
 
-# Run all tests; those on the GPU use a software driver where there is no other.
+# Run all tests; those on the GPU use a software driver if there is no other.
 test: deps
 	$(CARGO) test --release --locked
 
@@ -31,26 +31,25 @@ test: deps
 nightly: deps
 	CAUSTICA_PROPERTY_CASES=2000 CAUSTICA_RENDERS=10000 $(CARGO) test --release --locked
 
-# Check formatting, and let no warning pass.
+# Check formatting and lints; warnings are errors.
 lint: deps
 	@./deploy/install-deps.sh --lint
 	$(CARGO) fmt --check
 	$(CARGO) clippy --release --locked --all-targets -- -D warnings
 
-# Measure.
+# Run the benchmarks.
 bench: deps
 	$(CARGO) bench --locked --bench caustica
 
-# Measure what each dial buys, and write docs/accuracy.md, docs/level-maps.md and docs/hard-cases.md; an hour or two on a quiet machine.
+# Measure error and time of each dial, and write docs/accuracy.md, docs/level-maps.md and docs/hard-cases.md; one to two hours on an idle machine.
 docs: deps
 	$(CARGO) run --release --locked --example make_docs
 
 # Seconds that each fuzz target runs.
 FUZZ_SECONDS ?= 60
 
-# Feed any bytes to the readers of scenes and meshes; what breaks them is kept in fuzz/artifacts. The build takes minutes, once.
-# Coverage is a stable option of the compiler, but the way cargo-fuzz asks for it is not: hence RUSTC_BOOTSTRAP. No sanitizer: there
-# is no unsafe code of ours to watch.
+# Fuzz the readers of scenes and meshes; inputs that break them are kept in fuzz/artifacts. The first build takes minutes.
+# cargo-fuzz requests coverage by an unstable compiler flag: hence RUSTC_BOOTSTRAP. No sanitizer: our code has no unsafe blocks.
 fuzz: fuzz-deps
 	$(CARGO) run --release --locked --example fuzz_seeds -- fuzz/corpus
 	RUSTC_BOOTSTRAP=1 $(CARGO) fuzz run --sanitizer none obj -- -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=16384
@@ -59,15 +58,15 @@ fuzz: fuzz-deps
 fuzz-deps: deps
 	@$(CARGO) fuzz --version >/dev/null 2>&1 || $(CARGO) install cargo-fuzz --version ^0.13 --locked
 
-# Plant errors in shaders and in a copy of the sources, see that hard cases and tests catch each, and write docs/mutants.md; half an hour.
+# Plant errors in shaders and in a copy of the sources, check that hard cases and tests catch each, and write docs/mutants.md; half an hour.
 mutants: deps
 	$(CARGO) run --release --locked --example mutants
 
-# Remove everything that was made.
+# Remove all build products and pictures.
 clean:
 	$(CARGO) clean
 	rm -rf out
 
-# Install what is missing on this machine.
+# Install missing system packages.
 deps:
 	@./deploy/install-deps.sh --build --run

@@ -1,13 +1,13 @@
 #!/bin/sh
-# Installs what Caustica needs from the system, if it is missing. The Makefile, the Dockerfile and the CI call this one
-# script, so that there is one list.
+# Installs the system packages that Caustica needs, if they are missing. The Makefile, the Dockerfile and the CI all call
+# this script, so that there is one list.
 #
 #   deploy/install-deps.sh --build       what compiling needs: a C and C++ compiler and linker, make
-#   deploy/install-deps.sh --run         what running needs: the Vulkan loader and a driver (a software one if there is none)
+#   deploy/install-deps.sh --run         what running needs: the Vulkan loader and a driver (software if there is no other)
 #   deploy/install-deps.sh --container   --run, and what a GPU driver mounted into a container links against
 #   deploy/install-deps.sh --lint        what `make lint` needs: rustfmt and clippy, which a minimal Rust toolchain lacks
 #
-# Options add up; without any it is --build --run. Nothing is installed, and no root is needed, when everything is there.
+# Options can be combined; the default is --build --run. If nothing is missing, nothing is installed and root is not needed.
 set -eu
 
 usage() {
@@ -35,7 +35,7 @@ has_c_compiler() {
         cc -x c -o /dev/null - >/dev/null 2>&1
 }
 
-# The same for C++: g++ without libstdc++-dev fails here.
+# The same check for C++: g++ without libstdc++-dev fails here.
 has_cxx_compiler() {
     has_command c++ && printf '#include <cmath>\nint main() { return 0; }\n' |
         c++ -x c++ -o /dev/null - >/dev/null 2>&1
@@ -48,7 +48,7 @@ has_library() {
     return 1
 }
 
-# A driver announces itself to the Vulkan loader by a JSON file.
+# A driver registers with the Vulkan loader by a JSON file.
 has_vulkan_driver() {
     [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] && return 0
     for file in /usr/share/vulkan/icd.d/*.json /usr/local/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json; do
@@ -57,7 +57,7 @@ has_vulkan_driver() {
     return 1
 }
 
-# 1. Look for what is needed; collect the Debian packages of what is not there.
+# 1. Check what is needed; collect the Debian packages of what is missing.
 missing=
 need() { # need PACKAGES TEST...
     packages=$1
@@ -89,7 +89,7 @@ if [ -n "$missing" ]; then
     if ! has_command apt-get; then
         echo "install-deps: missing here, by the names of the Debian packages:$missing" >&2
         echo "install-deps: please install their equivalents (a C and a C++ compiler, make, the Vulkan loader, a Vulkan driver)" >&2
-        # A driver may announce itself elsewhere on such a system, and make may be what called.
+        # On such a system a driver may be registered elsewhere, and make exists if it called this script.
         if [ $build = yes ] && ! { has_c_compiler && has_cxx_compiler; }; then exit 1; fi
         if [ $run = yes ] && ! has_library libvulkan.so.1; then exit 1; fi
         echo "install-deps: going on with what is here" >&2

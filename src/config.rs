@@ -1,4 +1,4 @@
-//! Every setting of the program, in one place: command-line flag, environment variable, default.
+//! Every setting of the program: command-line flag, environment variable, default.
 
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
@@ -12,11 +12,11 @@ use crate::calibration::Calibration;
 )]
 #[serde(rename_all = "snake_case")]
 pub enum AdapterPolicy {
-    /// A GPU, or refuse to start.
+    /// A GPU; without one the program does not start.
     Gpu,
-    /// A CPU driver (software Vulkan), or refuse to start.
+    /// A CPU driver (software Vulkan); without one the program does not start.
     Software,
-    /// A GPU if there is one, else a CPU driver; which one is said in logs, `/v1/info` and every stats block.
+    /// A GPU if there is one, else a CPU driver. Logs, `/v1/info` and every `stats` name the adapter in use.
     #[default]
     Any,
 }
@@ -27,7 +27,7 @@ pub struct RenderConfig {
     /// Which adapters may be used.
     #[arg(long, env = "CAUSTICA_ADAPTER", value_enum, default_value_t = AdapterPolicy::Any, global = true)]
     pub adapter: AdapterPolicy,
-    /// GPU memory one frame may hold, MiB; a plan above it is refused before anything is allocated.
+    /// GPU memory that one frame may hold, MiB. A plan that needs more is refused before anything is allocated.
     #[arg(
         long,
         env = "CAUSTICA_MEMORY_BUDGET_MIB",
@@ -43,13 +43,14 @@ pub struct RenderConfig {
         global = true
     )]
     pub level_map_budget_mib: u64,
-    /// Folder to write every assembled shader to.
+    /// Folder to which every assembled shader is written.
     #[arg(long, env = "CAUSTICA_SHADER_DUMP", global = true)]
     pub shader_dump: Option<std::path::PathBuf>,
-    /// Calibration that `caustica calibrate` wrote on this machine; without it predictions are for software Vulkan on two cores.
+    /// File that `caustica calibrate` wrote on this machine. Without it, predictions are those of software Vulkan on two cores.
     #[arg(long, env = "CAUSTICA_CALIBRATION", value_name = "FILE", value_parser = calibration, global = true)]
     pub calibration: Option<Calibration>,
-    /// Folder to keep float64 truths in, for studies of accuracy; without it `accuracy` uses the user's caches and a service none.
+    /// Folder in which float64 references are kept for studies of accuracy. Without it, `caustica accuracy` uses the user's cache
+    /// folder, and a service keeps none.
     #[arg(
         long,
         env = "CAUSTICA_TRUTH_CACHE",
@@ -60,12 +61,12 @@ pub struct RenderConfig {
 }
 
 impl RenderConfig {
-    /// GPU memory one frame may hold, bytes.
+    /// GPU memory that one frame may hold, bytes.
     pub fn memory_budget_bytes(&self) -> u64 {
         self.memory_budget_mib.saturating_mul(1 << 20)
     }
 
-    /// GPU memory for cached level maps, bytes; a device that cannot bind so much at once gets less.
+    /// GPU memory for cached level maps, bytes. A device that cannot bind a buffer of this size gets less.
     pub fn level_map_budget_bytes(&self) -> u64 {
         self.level_map_budget_mib.saturating_mul(1 << 20)
     }
@@ -89,7 +90,7 @@ impl Default for RenderConfig {
     }
 }
 
-/// What a request may ask for at most; published in `/v1/info`.
+/// Limits of a request; published in `/v1/info`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Args, Serialize, Deserialize, ToSchema)]
 pub struct Limits {
     /// Largest request body, bytes.
@@ -100,7 +101,7 @@ pub struct Limits {
         global = true
     )]
     pub max_body_bytes: usize,
-    /// Largest picture, pixels.
+    /// Largest picture or map, pixels (width × height).
     #[arg(
         long,
         env = "CAUSTICA_MAX_PIXELS",
@@ -130,7 +131,7 @@ pub struct Limits {
     /// Most wave components in a scene.
     #[arg(long, env = "CAUSTICA_MAX_WAVES", default_value_t = 256, global = true)]
     pub max_waves: usize,
-    /// Host memory for uploaded meshes, bytes; beyond it an upload is refused.
+    /// Host memory for uploaded meshes, bytes. An upload that would exceed it is refused.
     #[arg(
         long,
         env = "CAUSTICA_MESH_STORE_BYTES",
@@ -160,7 +161,7 @@ pub struct ServeConfig {
     /// Address to listen on.
     #[arg(long, env = "CAUSTICA_LISTEN", default_value = "127.0.0.1:8080")]
     pub listen: std::net::SocketAddr,
-    /// Requests that may wait for the GPU; one more is answered 429.
+    /// Requests that may wait for the GPU. One more is answered 429.
     #[arg(long, env = "CAUSTICA_QUEUE", default_value_t = 16)]
     pub queue: usize,
     /// Seconds from arrival after which a request is answered 503.

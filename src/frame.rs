@@ -1,4 +1,4 @@
-//! A rendered frame: linear f32 layers and what they cost, before any file format.
+//! A rendered frame, before it is written to a file: linear f32 layers and their stats.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::stats::Stats;
 pub struct Layer {
     /// Values per pixel: 1 for depth, 4 for radiance, else 3.
     pub channels: usize,
-    /// width × height × channels values.
+    /// Values: width × height × channels.
     pub data: Vec<f32>,
 }
 
@@ -21,7 +21,7 @@ pub struct Frame {
     pub width: u32,
     /// Pixels or texels along y (or z).
     pub height: u32,
-    /// What was asked for: a view has the layers named in the scene; an irradiance map has [`LayerName::Irradiance`] only.
+    /// The requested layers: a view has those named in the scene, an irradiance map has [`LayerName::Irradiance`] only.
     pub layers: BTreeMap<LayerName, Layer>,
     /// Cost, energy, warnings.
     pub stats: Stats,

@@ -1,4 +1,4 @@
-//! What a frame cost and how trustworthy it is: the `stats` of every answer.
+//! The `stats` of every answer: the cost and the trustworthiness of a frame.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -10,7 +10,7 @@ pub struct Stats {
     pub version: String,
     /// `blake3:…` of the canonical scene.
     pub scene_hash: String,
-    /// Where it ran.
+    /// The adapter it ran on.
     pub adapter: AdapterStats,
     /// The method that carried the light.
     pub method: MethodStats,
@@ -24,15 +24,15 @@ pub struct Stats {
     pub memory: MemoryStats,
     /// One account per light that shines into or under the water.
     pub energy: Vec<EnergyAccount>,
-    /// One entry per light and object that got its light by planes; absent otherwise.
+    /// One entry per light and object whose light was placed by reference planes; absent otherwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planes: Vec<PlaneStats>,
-    /// How near the truth it is thought to be; absent unless `quality` asks.
+    /// Estimated accuracy; absent unless `quality` requests it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<AccuracyStats>,
     /// How radiance becomes display values.
     pub exposure: ExposureStats,
-    /// Whatever was clamped, skipped, sub-sampled or not simulated.
+    /// Everything that was clamped, skipped, sub-sampled or not simulated.
     pub warnings: Vec<Warning>,
 }
 
@@ -42,9 +42,9 @@ pub struct Stats {
 pub struct MethodStats {
     /// Its name, as in `quality.method`.
     pub name: String,
-    /// Where it was published.
+    /// Its publication.
     pub paper: String,
-    /// Whether the light that lands is what its rays carried; where not, open energy accounts are no defect.
+    /// Whether the light that lands is the light its rays carried. If not, an energy account that does not close is no defect.
     pub conserves_energy: bool,
 }
 
@@ -57,7 +57,7 @@ pub struct AdapterStats {
     pub backend: String,
     /// Driver name and version.
     pub driver: String,
-    /// Whether a CPU does the work.
+    /// Whether the adapter is a software driver on the CPU.
     pub software: bool,
 }
 
@@ -66,11 +66,11 @@ pub struct AdapterStats {
 pub struct PassStats {
     /// Pass name.
     pub name: String,
-    /// Why it is in.
+    /// Why it ran.
     pub reason: String,
-    /// How often it ran (per light, per level map, per band of the picture).
+    /// Number of runs (per light, per level map, per band of the picture).
     pub runs: u32,
-    /// GPU time of all runs, ms; absent when the adapter has no usable timestamps.
+    /// GPU time of all runs, ms; absent if the adapter has no usable timestamps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gpu_ms: Option<f64>,
 }
@@ -80,7 +80,7 @@ pub struct PassStats {
 pub struct AbsentPass {
     /// Pass name.
     pub name: String,
-    /// Why it is out.
+    /// Why it was not needed.
     pub reason: String,
 }
 
@@ -89,11 +89,12 @@ pub struct AbsentPass {
 pub struct TimeStats {
     /// Waiting for the GPU thread.
     pub queue: f64,
-    /// Facts and plan; with `quality.target_error` or `quality.time_budget_ms` also choosing the dials, looks at the light included.
+    /// Computing facts and plan. With `quality.target_error` or `quality.time_budget_ms` also choosing the dials, trial renders
+    /// included.
     pub plan: f64,
-    /// Uploads and recording.
+    /// Uploading data and recording commands.
     pub upload: f64,
-    /// From submission until the GPU was done; what was recorded meanwhile is not taken off.
+    /// From submission until the GPU was done. Time spent on recording meanwhile is not subtracted.
     pub gpu: f64,
     /// Copying results to the host.
     pub readback: f64,
@@ -106,87 +107,88 @@ pub struct TimeStats {
 /// Memory, bytes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MemoryStats {
-    /// What the plan said the frame would hold at its peak.
+    /// Peak of the frame as planned.
     pub planned_peak_bytes: u64,
-    /// What it did hold, by the program's own accounting of GPU allocations.
+    /// Peak of the frame as measured, by the program's own accounting of GPU allocations.
     pub peak_bytes: u64,
     /// The limit a plan is checked against.
     pub budget_bytes: u64,
-    /// What the GPU's allocator had given out at the end of the frame, other resources included; absent where nobody asked or the
-    /// backend does not tell.
+    /// Bytes allocated by the GPU's allocator at the end of the frame, other resources included; absent if not requested or not
+    /// reported by the backend.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub allocated_bytes: Option<u64>,
-    /// Level-map cache.
+    /// The level-map cache.
     pub level_maps: CacheStats,
 }
 
-/// A cache, for this frame (hits, misses, evictions) and as it stands after it (entries, bytes).
+/// A cache: hits, misses and evictions of this frame; entries and bytes after it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CacheStats {
-    /// Found.
+    /// Entries found.
     pub hits: u64,
-    /// Built.
+    /// Entries built.
     pub misses: u64,
-    /// Thrown out to make room.
+    /// Entries evicted to make room.
     pub evictions: u64,
-    /// Held now.
+    /// Entries held after the frame.
     pub entries: u64,
-    /// Held now, bytes.
+    /// Bytes held after the frame.
     pub bytes: u64,
-    /// At most, bytes.
+    /// Maximum number of bytes held.
     pub budget_bytes: u64,
 }
 
-/// Where one light's power went, W per channel; each term is summed where it happens, none by subtraction.
+/// Where the power of one light went, W per channel. Each term is summed where the light goes; none is found by subtraction.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct EnergyAccount {
     /// Index into `lights`.
     pub light: u32,
-    /// Falls on the simulated piece of water; of a point light under water what goes in the simulated directions.
+    /// Falls on the simulated piece of water. For a point light under water: emitted in the simulated directions.
     pub emitted_w: [f64; 3],
-    /// Arrives on receiver maps.
+    /// Lands on receiver maps.
     pub landed_w: [f64; 3],
-    /// Absorbed on the way to a receiver.
+    /// Absorbed on the path to a receiver.
     pub absorbed_w: [f64; 3],
-    /// Scattered out of the beams on the way to a receiver.
+    /// Scattered out of the beams on the path to a receiver.
     pub scattered_w: [f64; 3],
     /// Reflected at the surface.
     pub reflected_w: [f64; 3],
-    /// Passes the edges of the maps.
+    /// Falls beside the maps.
     pub left_region_w: [f64; 3],
     /// Meets no receiver at all (nothing below, or refracted away from everything).
     pub missed_w: [f64; 3],
-    /// |emitted − all the rest| / emitted, the largest of the channels; 0 when nothing is emitted.
+    /// Closure of the account: |emitted − sum of the other terms| / emitted, the largest of the channels; 0 if nothing is
+    /// emitted.
     pub closure: f64,
 }
 
-/// What placing light on an object by planes took.
+/// The work of placing light on an object by reference planes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PlaneStats {
     /// Index into `lights`.
     pub light: u32,
     /// Index into `objects`.
     pub object: u32,
-    /// Planes that were asked for by the dial of the method, fewer where level of detail made the map smaller.
+    /// Planes that the method's dial requests; fewer if level of detail made the map smaller.
     pub specified: u32,
-    /// Planes that were used.
+    /// Planes used.
     pub used: u32,
     /// Pieces of the object's box that hold them.
     pub sub_boxes: u32,
     /// Beams that go under water.
     pub beams: u32,
-    /// Beams that may reach the object, which are cut with its planes.
+    /// Beams that may reach the object: these are intersected with its planes.
     pub beams_kept: u32,
 }
 
-/// How near the truth a frame is thought to be, and which dials were chosen for that.
+/// The estimated accuracy of a frame, and the dials chosen for it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct AccuracyStats {
-    /// Relative L1 error of the irradiance, estimated from the same light done with two fifths of the water cells or fewer
-    /// (`quality.estimate_error`).
+    /// Relative L1 error of the irradiance, estimated by computing the light a second time with two fifths of the water cells
+    /// along each side, or fewer (`quality.estimate_error`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimated_error: Option<f64>,
-    /// The dials that `quality.target_error` or `quality.time_budget_ms` were turned into.
+    /// The dials chosen for `quality.target_error` or `quality.time_budget_ms`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<ChosenDials>,
 }
@@ -202,46 +204,47 @@ pub struct ChosenDials {
     pub level_map_texels: u32,
     /// `quality.split_levels`.
     pub split_levels: u32,
-    /// Relative L1 error they are predicted to give.
+    /// Predicted relative L1 error.
     pub predicted_error: f64,
-    /// Time that a frame is predicted to take with them, warm, ms; choosing is not in it.
+    /// Predicted time of a warm frame, ms, without the time to choose.
     pub predicted_ms: f64,
-    /// Whether what was asked for is predicted to be met; otherwise these are the best that can be had.
+    /// Whether the target is predicted to be met. If not, these are the best dials available.
     pub meets: bool,
-    /// How the choice was made, in a sentence.
+    /// How the choice was made, one sentence.
     pub reason: String,
 }
 
 /// How radiance becomes display values: display = tone_curve(radiance · scale).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ExposureStats {
-    /// Radiance of a perfect white, horizontal, dry surface under the scene's suns and skies, and of one that faces each point light in the
-    /// middle of what is looked at, at the height of the floor (at least 0.1 m away), W/(m² sr); it is shown as 1 at 0 EV.
+    /// Radiance that is shown as 1 at 0 EV, W/(m² sr): that of a perfectly white, dry surface, horizontal under the scene's suns
+    /// and skies, and facing each point light from the middle of the viewed region at the height of the floor (at least 0.1 m
+    /// from the light).
     pub white_radiance: f64,
-    /// Requested stops.
+    /// Requested exposure, stops.
     pub ev: f64,
-    /// Factor applied (PNG only).
+    /// Factor applied to radiance (PNG only).
     pub scale: f64,
 }
 
-/// Something the reader of the picture should know.
+/// Something that a user of the picture should know.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Warning {
-    /// Stable word for programs.
+    /// Stable code for programs.
     pub code: String,
     /// Sentence for people.
     pub message: String,
-    /// JSON pointer to the cause, where there is one.
+    /// JSON pointer to the cause, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pointer: Option<String>,
-    /// Flux concerned, W per channel: measured by the frame, or estimated before it from a sample of rays.
+    /// Flux concerned, W per channel: measured in the frame, or estimated before it from sampled rays.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flux_w: Option<[f64; 3]>,
 }
 
 impl Warning {
-    /// Codes of warnings without a flux: nothing is lost (`sums_done_again`), or what they tell of is no light on its way but
-    /// dials, pixels, layers, values of a file, or what surfaces reflect. All others say in a frame how much flux is concerned.
+    /// Codes of warnings without a flux: either no light is lost (`sums_done_again`), or they concern dials, pixels, layers,
+    /// values of a file or what surfaces reflect, not light on its path. In a frame, all other warnings state the flux concerned.
     pub const WITHOUT_FLUX: [&'static str; 16] = [
         "calibrated_elsewhere",
         "half_clamped",

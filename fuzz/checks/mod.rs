@@ -1,4 +1,4 @@
-//! What must hold for any bytes at all: shared by the fuzz targets and by the tests that replay what fuzzing has found.
+//! Checks that must hold for any bytes, shared by the fuzz targets and the tests that replay fuzzing's finds.
 
 pub(crate) mod obj;
 pub(crate) mod scene;

@@ -1,15 +1,15 @@
-//! Any bytes as an OBJ, and behind a zero byte an MTL.
+//! Any bytes as an OBJ; the bytes after a zero byte are the MTL.
 
 use caustica::config::Limits;
 use caustica::mesh::hierarchy::LEAF;
 use caustica::mesh::{Mesh, obj};
 
-/// Triangles that are read at most: large meshes say nothing that small ones do not.
+/// Maximum number of triangles: large meshes find no more errors than small ones.
 const MOST_TRIANGLES: usize = 4096;
 /// How far the length of a normal may be from 1.
 const NORMAL_TOLERANCE: f32 = 1e-5;
 
-/// Reads `bytes`; what is accepted must be sound, what is refused must say why.
+/// Reads `bytes`. An accepted mesh must be valid; a refusal must state its reason.
 pub(crate) fn check(bytes: &[u8]) {
     let mut parts = bytes.splitn(2, |byte| *byte == 0);
     let text = parts.next().unwrap_or_default();
@@ -24,7 +24,7 @@ pub(crate) fn check(bytes: &[u8]) {
     }
 }
 
-/// What the renderer relies on.
+/// The properties that the renderer relies on.
 fn sound(mesh: &Mesh) {
     assert!(!mesh.triangles.is_empty() && mesh.triangles.len() <= MOST_TRIANGLES);
     assert!(!mesh.materials.is_empty());
@@ -61,7 +61,7 @@ fn sound(mesh: &Mesh) {
     every_triangle_has_its_leaf(mesh);
 }
 
-/// A walk that meets every box ends, and comes to every triangle once.
+/// A traversal that hits every box ends, and visits every triangle once.
 fn every_triangle_has_its_leaf(mesh: &Mesh) {
     let mut met = vec![0_u32; mesh.triangles.len()];
     let mut at = 0;

@@ -1,4 +1,4 @@
-//! Any bytes as a scene, as far as it goes without a GPU: read, checked, resolved, its facts, its plan.
+//! Any bytes as a scene, through all steps without a GPU: reading, validation, resolving, facts, plan.
 
 use std::sync::{Arc, OnceLock};
 
@@ -10,7 +10,7 @@ use caustica::scene::{Scene, SceneError};
 /// The mesh of every object: a tetrahedron.
 const MESH: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
-/// Reads `bytes`; what is accepted must have a finite plan, what is refused must say where, what and what instead.
+/// Reads `bytes`. An accepted scene must have a finite plan; a refusal must state where, what, and what is accepted.
 pub(crate) fn check(bytes: &[u8]) {
     let scene = match Scene::from_json(bytes) {
         Ok(scene) => scene,
@@ -44,7 +44,7 @@ pub(crate) fn check(bytes: &[u8]) {
     }
 }
 
-/// What was read is written, and reads as the same.
+/// A scene that was read is written, and reads back as the same scene.
 fn reads_back(scene: &Scene) {
     let written = serde_json::to_vec(scene).unwrap_or_else(|error| panic!("{error}"));
     match Scene::from_json(&written) {

@@ -1,13 +1,14 @@
-//! Changes of JSON text at its values: a number for another, a field more or less, a part of the document in another's place.
+//! Mutations of the values in a JSON text: replaces a number, adds or removes a field, copies a part of the document to another
+//! place.
 
 use std::sync::OnceLock;
 
 use serde_json::{Map, Number, Value};
 
-/// The contract: where the names of fields and kinds come from.
+/// The contract, from which the names of fields and kinds are taken.
 const CONTRACT: &str = include_str!("../../openapi.yaml");
 
-/// Numbers on and about the edges of f32, f64, angles and counts.
+/// Numbers at and near the limits of f32, f64, angles and counts.
 const NUMBERS: [f64; 32] = [
     0.0,
     -0.0,
@@ -55,7 +56,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// 0 … `count` − 1; 0 of nothing.
+    /// 0 … `count` − 1; 0 if `count` is 0.
     fn below(&mut self, count: usize) -> usize {
         (self.next() % count.max(1) as u64) as usize
     }
@@ -85,7 +86,7 @@ fn count(value: &Value) -> usize {
     }
 }
 
-/// The value that comes `index` values after the first, in the order of the text.
+/// The value at `index`, in the order of the text.
 fn find<'a>(value: &'a mut Value, index: &mut usize) -> Option<&'a mut Value> {
     if *index == 0 {
         return Some(value);

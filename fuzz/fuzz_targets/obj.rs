@@ -1,4 +1,4 @@
-//! Any bytes as an OBJ, and behind a zero byte an MTL.
+//! Any bytes as an OBJ; the bytes after a zero byte are the MTL.
 #![no_main]
 
 #[path = "../checks/obj.rs"]

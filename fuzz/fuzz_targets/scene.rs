@@ -1,4 +1,4 @@
-//! Any bytes as a scene. Every other change is one to JSON values, so that what is tried gets past the parser.
+//! Any bytes as a scene. Every second mutation changes JSON values, so that inputs get past the parser.
 #![no_main]
 
 #[path = "../checks/scene.rs"]

@@ -1,4 +1,4 @@
-//! Meshes by id.
+//! The mesh store.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -6,8 +6,8 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use crate::config::Limits;
 use crate::mesh::{Mesh, MeshError, MeshInfo, obj};
 
-/// Meshes by content id, for many threads, within a budget of bytes. Nothing is thrown out to make room: a mesh stays
-/// until it is removed, and one that does not fit is refused.
+/// Meshes by content id, shared between threads, within a budget of bytes. Nothing is evicted: a mesh stays until it is removed,
+/// and a mesh that does not fit is refused.
 #[derive(Debug)]
 pub struct MeshStore {
     limits: Limits,
@@ -20,12 +20,12 @@ struct Held {
     bytes: u64,
 }
 
-/// A mesh that is in the store now.
+/// A mesh in the store.
 #[derive(Clone, Debug)]
 pub struct Inserted {
     /// The mesh.
     pub mesh: Arc<Mesh>,
-    /// Whether it was not there before.
+    /// Whether this upload added it.
     pub created: bool,
 }
 
@@ -44,9 +44,9 @@ impl MeshStore {
         }
     }
 
-    /// Reads a mesh and keeps it; the same bytes give the mesh that is there already, without reading them again.
+    /// Reads a mesh and stores it. If the same bytes are stored already, returns that mesh without reading them again.
     ///
-    /// Takes up to seconds for the largest meshes; other calls go on meanwhile.
+    /// The largest meshes take seconds; other calls are not blocked meanwhile.
     ///
     /// # Errors
     /// What [`obj::read`] refuses, and [`MeshError::StoreFull`].
@@ -60,7 +60,7 @@ impl MeshStore {
         let mesh = Arc::new(obj::read(obj, mtl, &self.limits)?);
         let needed_bytes = mesh.bytes();
         let mut held = self.write();
-        // Another thread may have brought the same mesh in the meantime.
+        // Another thread may have added the same mesh meanwhile.
         if let Some(mesh) = held.meshes.get(&mesh.id) {
             return Ok(Inserted {
                 mesh: Arc::clone(mesh),
@@ -82,12 +82,12 @@ impl MeshStore {
         })
     }
 
-    /// The mesh of an id.
+    /// The mesh with this id.
     pub fn get(&self, id: &str) -> Option<Arc<Mesh>> {
         self.read().meshes.get(id).cloned()
     }
 
-    /// Forgets a mesh; whether it was there. Frames that hold it keep it until they are done.
+    /// Removes a mesh; returns whether it was stored. Frames that use it keep it until they are done.
     pub fn remove(&self, id: &str) -> bool {
         let mut held = self.write();
         let Some(mesh) = held.meshes.remove(id) else {
@@ -107,7 +107,7 @@ impl MeshStore {
         self.read().bytes
     }
 
-    // No code that holds the lock can panic half-way through a change, so a poisoned lock guards sound data.
+    // No code that holds the lock can panic in the middle of a change, so the data behind a poisoned lock is valid.
     fn read(&self) -> RwLockReadGuard<'_, Held> {
         self.held.read().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,4 +1,4 @@
-//! What scenes refer to by content id: meshes.
+//! Data that scenes refer to by content id: meshes.
 
 pub mod meshes;
 

@@ -19,26 +19,26 @@ use crate::reference::{ReferenceError, TruthSettings, truth};
 use crate::render::{RenderError, Renderer};
 use crate::scene::ResolvedScene;
 
-/// What to sweep, and where to.
+/// What to sweep, and where to write the study.
 #[derive(Clone, Debug, Args)]
 pub struct AccuracyArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
     /// A dial of `quality` and its values: `water_cells=64..1024` (doubling), `split_levels=0..4` (counting), `a,b,c`. May be
-    /// given several times; without it those dials are swept that matter to the scene.
+    /// given several times. Without it, the dials that matter to the scene are swept.
     #[arg(long, value_name = "NAME=VALUES")]
     pub dial: Vec<String>,
     /// Sweep all combinations of the dials instead of one dial at a time.
     #[arg(long)]
     pub grid: bool,
-    /// Timed runs of each setting; slow ones are content with three.
+    /// Timed runs of each setting; settings that take over a second get three.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub runs: u32,
-    /// Relative L1 error that the truth may have by its own estimate.
+    /// Largest relative L1 error of the float64 reference, by its own estimate.
     #[arg(long, default_value_t = 2e-3, value_parser = truth_error, value_name = "ERROR")]
     pub truth_error: f64,
-    /// Folder to write to; made if it is not there.
+    /// Folder to write to; created if it does not exist.
     #[arg(short, long, value_name = "FOLDER")]
     pub output: PathBuf,
 }
@@ -51,7 +51,7 @@ pub(super) fn truth_error(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Computes the truth, sweeps the dials, writes the study, and says on stderr what it found.
+/// Computes the reference, sweeps the dials, writes the study, and prints a summary to stderr.
 ///
 /// # Errors
 ///
@@ -64,7 +64,7 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
         grid: args.grid,
         runs: args.runs,
     };
-    // Before the truth, which may take minutes.
+    // Check this before the reference is computed, which may take minutes.
     sweep::check(resolved, &settings, limits).map_err(|error| refused(args, error))?;
     std::fs::create_dir_all(&args.output).map_err(|e| CliError::write(&args.output, e))?;
     let progress = Progress::new();
@@ -130,7 +130,7 @@ fn dials(args: &AccuracyArgs, resolved: &ResolvedScene) -> Result<Vec<Dial>, Cli
         .collect()
 }
 
-/// Where the user's programs keep what can be made again.
+/// The folder of the user's caches.
 pub(super) fn cache_folder() -> Option<PathBuf> {
     let folder = std::env::var_os("XDG_CACHE_HOME")
         .map(PathBuf::from)
@@ -157,7 +157,7 @@ fn refused(args: &AccuracyArgs, error: StudyError<RenderError>) -> CliError {
     }
 }
 
-/// The study for a terminal: a line for each setting, a star where nothing else is both faster and nearer to the truth.
+/// The study for a terminal: a line for each setting, with a star if no other setting is both faster and more accurate.
 pub fn in_words(study: &Study) -> String {
     let mut text = format!(
         "{}, on {}\ntruth: {:.1e} rays, its own error {:.3} %, {:.0} s{}\n",

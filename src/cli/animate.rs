@@ -1,7 +1,7 @@
-//! `caustica animate`: many moments of one scene, one file each.
+//! `caustica animate`: renders frames of one scene at different times, one file each.
 //!
-//! Frames are independent: any set of them may be rendered by any process in any order, and a file that is there is whole.
-//! So a range that was cut short is finished by the same command with `--skip-existing`.
+//! Frames are independent: any set of them may be rendered by any process in any order, and a file that exists is complete. So
+//! the same command with `--skip-existing` finishes a range that was interrupted.
 
 use std::io::IsTerminal;
 use std::path::Path;
@@ -19,7 +19,7 @@ use crate::methods;
 use crate::render::{Prepared, RenderError, Renderer};
 use crate::scene::ResolvedScene;
 
-/// Which frames to render, and where to.
+/// Which frames to render, and where to write them.
 #[derive(Clone, Debug, Args)]
 pub struct AnimateArgs {
     /// The scene.
@@ -28,13 +28,13 @@ pub struct AnimateArgs {
     /// Frames: `0-59`, `1-20:4` (every 4th), `30`, or several joined by commas.
     #[arg(long, value_name = "RANGES")]
     pub frames: FrameSet,
-    /// Frames per second: frame f shows the moment time_s + f / fps.
+    /// Frames per second: frame f is rendered at time_s + f / fps.
     #[arg(long, default_value_t = 30.0, value_parser = frame_rate)]
     pub fps: f64,
     /// Files to write, with a place for the frame number: `frame.%04d.png`; .png or .exr decides the format.
     #[arg(short, long, value_name = "PATTERN")]
     pub output: FramePattern,
-    /// Leave out frames whose file is there.
+    /// Skip frames whose file exists.
     #[arg(long)]
     pub skip_existing: bool,
 }
@@ -47,16 +47,16 @@ fn frame_rate(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The moment of a frame, s.
+/// The time of a frame, s.
 pub fn time_of(scene_time_s: f64, frame: u32, fps: f64) -> f64 {
     scene_time_s + f64::from(frame) / fps
 }
 
-/// Renders frames, one after the other, until all are there or one fails.
+/// Renders frames one after the other until all are done or one fails.
 ///
 /// # Errors
 ///
-/// Those of `render`; the frames before the failing one are there.
+/// Those of `render`. The frames before the failing one have been written.
 pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let start = Instant::now();
     let frames = args.frames.frames();
@@ -64,13 +64,13 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
     let format = files::format_of(&any_path)?;
     files::check_place(&any_path)?;
     let mut scene = scene_file::load(&args.scene, Some(format), limits)?;
-    let moments = moments(args, &scene.resolved, limits)?;
+    let frame_times = frame_times(args, &scene.resolved, limits)?;
     let mut missing: Vec<&(u32, f64)> = Vec::new();
-    for moment in &moments {
+    for moment in &frame_times {
         let (frame, time_s) = *moment;
         scene.resolved.scene.time_s = time_s;
         let path = args.output.path(frame);
-        if !(args.skip_existing && is_there(&path, &scene.resolved.hash())) {
+        if !(args.skip_existing && is_rendered(&path, &scene.resolved.hash())) {
             missing.push(moment);
         }
     }
@@ -99,20 +99,20 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
     Ok(())
 }
 
-/// Every frame with its moment, checked before the first is rendered.
-fn moments(
+/// Every frame with its time, checked before the first is rendered.
+fn frame_times(
     args: &AnimateArgs,
     resolved: &ResolvedScene,
     limits: &Limits,
 ) -> Result<Vec<(u32, f64)>, CliError> {
-    let moments: Vec<(u32, f64)> = args
+    let frame_times: Vec<(u32, f64)> = args
         .frames
         .frames()
         .iter()
         .map(|&frame| (frame, time_of(resolved.scene.time_s, frame, args.fps)))
         .collect();
-    // The last is the latest, and nothing but the moment differs.
-    if let Some((_, time_s)) = moments.last() {
+    // Checking the last frame is enough: it is the latest, and frames differ only in time.
+    if let Some((_, time_s)) = frame_times.last() {
         let mut last = resolved.scene.clone();
         last.time_s = *time_s;
         methods::validate(&last, limits).map_err(|error| CliError::Scene {
@@ -120,11 +120,11 @@ fn moments(
             error,
         })?;
     }
-    Ok(moments)
+    Ok(frame_times)
 }
 
-/// Whether `path` is a whole picture of just this scene and moment, by the scene's hash in its metadata.
-fn is_there(path: &Path, scene_hash: &str) -> bool {
+/// Whether `path` is a complete picture of this scene at this time, by the scene's hash in its metadata.
+fn is_rendered(path: &Path, scene_hash: &str) -> bool {
     let Ok(bytes) = std::fs::read(path) else {
         return false;
     };
@@ -140,7 +140,7 @@ fn is_there(path: &Path, scene_hash: &str) -> bool {
         .is_some_and(|hash| hash == scene_hash)
 }
 
-/// Renders the moment `time_s` to a file. What does not depend on time is taken over from the frame before, if there is one.
+/// Renders the frame at `time_s` to a file. What does not depend on time is reused from the previous frame, if there is one.
 fn one(
     renderer: &mut Renderer,
     resolved: &ResolvedScene,
@@ -162,7 +162,7 @@ fn one(
     files::write_whole(path, &picture.bytes)
 }
 
-/// A bar on stderr, if a person looks at it.
+/// A progress bar on stderr if that is a terminal.
 fn progress(count: usize) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

@@ -1,4 +1,4 @@
-//! What may be typed.
+//! The command line's syntax.
 
 use std::process::ExitCode;
 
@@ -12,48 +12,48 @@ use crate::config::{Limits, RenderConfig, ServeConfig};
 
 /// Renders water caustics, from the command line or as an HTTP service.
 ///
-/// Exit codes: 0 done; 1 failed in a way that is worth a retry (GPU, files, network); 2 refused: the scene or the command
-/// has to be changed first.
+/// Exit codes: 0 done; 1 failed, a retry may succeed (GPU, files, network); 2 refused, the scene or the command has to be changed
+/// first.
 #[derive(Debug, Parser)]
 #[command(name = "caustica", version)]
 pub struct Cli {
     /// Settings of the renderer.
     #[command(flatten, next_help_heading = "Renderer")]
     pub render: RenderConfig,
-    /// What a scene may ask for at most.
+    /// Limits of a scene.
     #[command(flatten, next_help_heading = "Limits")]
     pub limits: Limits,
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What to do.
+/// The command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Renders a scene file to a PNG or EXR file.
     Render(render::RenderArgs),
-    /// Renders frames of a scene file, each at its own moment.
+    /// Renders frames of a scene file, each at its own time.
     Animate(animate::AnimateArgs),
-    /// Draws error against time: renders a scene with each setting of its dials, compared with the float64 truth.
+    /// Plots error against time: renders a scene with each setting of its dials and compares it with the float64 reference.
     Accuracy(accuracy::AccuracyArgs),
-    /// Does a published experiment again.
+    /// Repeats a published experiment.
     Experiment(experiment::ExperimentArgs),
-    /// Measures what predictions of time and error rest on, on this machine.
+    /// Measures this machine for predictions of time and error.
     Calibrate(calibrate::CalibrateArgs),
-    /// Runs the scenes that break caustics renderers, and says whether each holds on this machine.
+    /// Runs hard cases (scenes that break caustics renderers) and reports which pass on this machine.
     HardCases(hard_cases::HardCasesArgs),
-    /// Says which passes a scene needs, why, and how much memory they hold; renders nothing.
+    /// Reports which passes a scene needs, why, and the memory they hold; renders nothing.
     Plan(plan::PlanArgs),
     /// Serves HTTP.
     Serve(ServeConfig),
     /// Compares the GPU of this machine with float64 physics.
     Selfcheck(selfcheck::SelfcheckArgs),
-    /// Asks a running service whether it would accept work.
+    /// Asks a running service whether it accepts work.
     Health(health::HealthArgs),
 }
 
-/// The program: reads the command line, runs it, and says on stderr what went wrong.
+/// The program: reads the command line, runs it, and prints errors to stderr.
 pub fn main() -> ExitCode {
     match run(Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
@@ -68,7 +68,7 @@ pub fn main() -> ExitCode {
 ///
 /// # Errors
 ///
-/// Whatever keeps the command from being done; see [`CliError::exit_code`].
+/// Any failure of the command; see [`CliError::exit_code`].
 pub fn run(cli: Cli) -> Result<(), CliError> {
     let Cli {
         render,

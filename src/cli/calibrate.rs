@@ -1,4 +1,4 @@
-//! `caustica calibrate`: measures what predictions of time and error rest on, on this machine.
+//! `caustica calibrate`: measures this machine for predictions of time and error.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::config::RenderConfig;
 use crate::lab::calibrate::{self, MeasureError};
 use crate::render::Renderer;
 
-/// Where the calibration goes.
+/// Where to write the calibration.
 #[derive(Clone, Debug, Args)]
 pub struct CalibrateArgs {
     /// File to write (JSON), for `--calibration` or CAUSTICA_CALIBRATION.
@@ -24,7 +24,7 @@ pub struct CalibrateArgs {
 ///
 /// # Errors
 ///
-/// When the GPU fails, gives no times, or the file cannot be written.
+/// If the GPU fails or gives no times, or if the file cannot be written.
 pub fn run(args: &CalibrateArgs, config: &RenderConfig) -> Result<(), CliError> {
     files::check_place(&args.output)?;
     let mut renderer = Renderer::new(config)?;

@@ -1,4 +1,4 @@
-//! What can go wrong on the command line, and the exit code it has.
+//! Errors of the command line, and their exit codes.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ pub const EXIT_RETRY: u8 = 1;
 /// Exit code of refusals: the same command will fail again.
 pub const EXIT_REFUSED: u8 = 2;
 
-/// Why a command was not done.
+/// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
     /// The command line does not make sense.
@@ -50,10 +50,10 @@ pub enum CliError {
     /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// The frame cannot be made into a file.
+    /// The frame cannot be encoded.
     #[error(transparent)]
     Encode(#[from] EncodeError),
-    /// A study or a calibration cannot be made.
+    /// A study or a calibration failed.
     #[error("{0}")]
     Study(String),
     /// The GPU of this machine does not calculate as it should.
@@ -64,20 +64,20 @@ pub enum CliError {
         /// All checks.
         all: usize,
     },
-    /// Hard cases that do not end as they should.
-    #[error("{failed} of {all} hard cases do not end as they should")]
+    /// Hard cases that do not end as expected.
+    #[error("{failed} of {all} hard cases do not end as expected")]
     HardCases {
-        /// Cases that failed, or held although they are known to fail.
+        /// Cases that failed, or passed although they are known to fail.
         failed: usize,
         /// All cases.
         all: usize,
     },
-    /// The service does not run, or would not accept work.
+    /// The service does not run, or does not accept work.
     #[error("{url} is not ready: {reason}")]
     NotReady {
-        /// Where it was asked.
+        /// The address asked.
         url: String,
-        /// What it answered, or why there was no answer.
+        /// Its answer, or why there was none.
         reason: String,
     },
     /// The service stopped.
@@ -102,7 +102,7 @@ impl CliError {
         }
     }
 
-    /// [`EXIT_RETRY`] where the same command may succeed later or elsewhere, [`EXIT_REFUSED`] where it cannot.
+    /// [`EXIT_RETRY`] if the same command may succeed later or elsewhere, [`EXIT_REFUSED`] if it cannot.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) | Self::Scene { .. } | Self::Encode(_) | Self::Study(_) => EXIT_REFUSED,
@@ -122,7 +122,7 @@ impl CliError {
     }
 }
 
-/// A call that the driver refused once it refuses again; everything else may pass.
+/// A call that the driver refused will be refused again; all other errors may be temporary.
 fn gpu_exit_code(error: &GpuError) -> u8 {
     match error {
         GpuError::Validation(_) => EXIT_REFUSED,

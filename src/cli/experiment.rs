@@ -1,4 +1,4 @@
-//! `caustica experiment`: published experiments done again.
+//! `caustica experiment`: repeats published experiments.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -29,20 +29,20 @@ pub struct ExperimentArgs {
 /// Which experiment.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Which {
-    /// Level maps against slice images, smart against uniform slicing, and both against hits (Tipprasert 2006, ch. 5).
+    /// Compares level maps with slice images, smart with uniform slicing, and both with exact ray hits (Tipprasert 2006, ch. 5).
     LevelMap(LevelMapArgs),
 }
 
 /// What to measure, and where to write it.
 #[derive(Clone, Debug, Args)]
 pub struct LevelMapArgs {
-    /// Shapes of the catalogue, separated by commas; `all` for all of them.
+    /// Shapes of the catalogue, separated by commas, or `all`.
     #[arg(long, default_value = "all", value_name = "NAMES")]
     pub meshes: String,
     /// Numbers of planes, 2 … 1024: `a,b,c`, or `a..b` for every one from a to b.
     #[arg(long, default_value = PLANES, value_name = "LIST")]
     pub planes: String,
-    /// Timed runs of each setting, all ways in turns.
+    /// Timed runs of each setting; the methods are interleaved.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub runs: u32,
     /// Water cells along each side of the light's window.
@@ -51,13 +51,13 @@ pub struct LevelMapArgs {
     /// Texels along each side of the maps: 16, 32 … 2048.
     #[arg(long, default_value_t = 128, value_parser = texels)]
     pub texels: u32,
-    /// Measure no errors: the float64 reference takes most of the time.
+    /// Measure no errors. This saves the float64 reference, which takes most of the time.
     #[arg(long)]
     pub no_truth: bool,
-    /// Relative L1 error that the reference may have by its own estimate.
+    /// Largest relative L1 error of the float64 reference, by its own estimate.
     #[arg(long, default_value_t = 3e-3, value_parser = super::accuracy::truth_error, value_name = "ERROR")]
     pub truth_error: f64,
-    /// Folder to write to; made if it is not there.
+    /// Folder to write to; created if it does not exist.
     #[arg(short, long, value_name = "FOLDER")]
     pub output: PathBuf,
 }
@@ -73,7 +73,7 @@ fn texels(text: &str) -> Result<u32, String> {
 /// Reads `--planes`.
 ///
 /// # Errors
-/// [`CliError::Usage`] with what would be accepted.
+/// [`CliError::Usage`] with what is accepted.
 pub fn planes(text: &str) -> Result<Vec<u32>, CliError> {
     let refused = || {
         CliError::Usage(format!(
@@ -92,7 +92,7 @@ pub fn planes(text: &str) -> Result<Vec<u32>, CliError> {
 /// Reads `--meshes`.
 ///
 /// # Errors
-/// [`CliError::Usage`] with the names there are.
+/// [`CliError::Usage`] with the existing names.
 pub fn meshes(text: &str) -> Result<Vec<String>, CliError> {
     let all = || shapes::ALL.iter().map(|shape| shape.name.to_owned());
     if text.trim() == "all" {
@@ -103,17 +103,17 @@ pub fn meshes(text: &str) -> Result<Vec<String>, CliError> {
         .map(|name| match shapes::Shape::named(&name) {
             Some(_) => Ok(name),
             None => Err(CliError::Usage(format!(
-                "--meshes: `{name}` is no shape; accepted: all, {}",
+                "--meshes: there is no shape `{name}`; accepted: all, {}",
                 all().collect::<Vec<_>>().join(", ")
             ))),
         })
         .collect()
 }
 
-/// Does the experiment and writes what it found.
+/// Runs the experiment and writes the results.
 ///
 /// # Errors
-/// A name or list that is none, a GPU that fails, a folder that cannot be written.
+/// An invalid name or list, a GPU that fails, a folder that cannot be written.
 pub fn run(args: &ExperimentArgs, config: &RenderConfig) -> Result<(), CliError> {
     let Which::LevelMap(args) = &args.which;
     let settings = Settings {

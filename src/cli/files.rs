@@ -1,4 +1,4 @@
-//! Files that are there as a whole or not at all.
+//! Writes files atomically: a file exists complete or not at all.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -7,18 +7,18 @@ use std::path::{Path, PathBuf};
 use super::error::CliError;
 use crate::scene::ImageFormat;
 
-/// Writes `bytes` beside `path` and moves them there, so that nobody ever sees half a file.
+/// Writes `bytes` to a temporary file beside `path` and renames it, so that no reader ever sees a partial file.
 ///
 /// # Errors
 ///
-/// [`CliError::Write`]; nothing is left behind.
+/// [`CliError::Write`]; the temporary file is removed.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     let temporary = temporary_beside(path)?;
     let written = File::create(&temporary)
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
         .and_then(|()| fs::rename(&temporary, path));
     written.map_err(|error| {
-        // It may not even be there.
+        // The temporary file may not exist.
         let _ = fs::remove_file(&temporary);
         CliError::write(path, error)
     })
@@ -38,7 +38,7 @@ fn temporary_beside(path: &Path) -> Result<PathBuf, CliError> {
     Ok(path.with_file_name(temporary))
 }
 
-/// Refuses a place that cannot be written to, before time is spent on what would be written.
+/// Refuses a path that cannot be written to, before time is spent on rendering.
 ///
 /// # Errors
 ///
@@ -66,7 +66,7 @@ pub fn check_place(path: &Path) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The format that a file's extension stands for.
+/// The image format of a file's extension.
 ///
 /// # Errors
 ///
@@ -77,13 +77,13 @@ pub fn format_of(path: &Path) -> Result<ImageFormat, CliError> {
         "png" => Ok(ImageFormat::Png),
         "exr" => Ok(ImageFormat::Exr),
         _ => Err(CliError::Usage(format!(
-            "cannot tell the format of {}; accepted: a name that ends in .png or .exr",
+            "{} has no known image format; accepted: a name that ends in .png or .exr",
             path.display()
         ))),
     }
 }
 
-/// Writes text to stdout; a reader that has gone away is no error.
+/// Writes text to stdout. A closed pipe is not an error.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! Which frames (`0-59`, `1-20:4,30`) and into which files (`frame.%04d.png`).
+//! Frame numbers (`0-59`, `1-20:4,30`) and file name patterns (`frame.%04d.png`).
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -21,10 +21,10 @@ impl FrameSet {
     }
 }
 
-/// Why a text is no frame set or no pattern.
+/// Why a text is not a frame set or not a pattern.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FramesError {
-    /// A part that is not understood.
+    /// A part that is not a frame or range.
     #[error(
         "`{0}` is not a frame or range; accepted: `30`, `0-59`, `1-20:4` (every 4th), joined by commas"
     )]
@@ -36,10 +36,12 @@ pub enum FramesError {
     #[error("the range `{0}` has a step of 0; accepted: 1 or more")]
     Step(String),
     /// Too many frames.
-    #[error("these are more than {MAX_FRAMES} frames; accepted: at most {MAX_FRAMES}")]
+    #[error("there are more than {MAX_FRAMES} frames; accepted: at most {MAX_FRAMES}")]
     TooMany,
     /// A pattern without its number, or with several.
-    #[error("`{0}` needs the frame number once; accepted: a name such as `frame.%04d.png`")]
+    #[error(
+        "`{0}` does not have a frame number exactly once; accepted: a name such as `frame.%04d.png`"
+    )]
     Pattern(String),
 }
 

@@ -1,4 +1,4 @@
-//! `caustica hard-cases`: the scenes that break caustics renderers, on this machine.
+//! `caustica hard-cases`: runs the scenes that break caustics renderers on this machine.
 
 use std::path::PathBuf;
 
@@ -12,13 +12,13 @@ use crate::config::RenderConfig;
 use crate::lab::hard_cases::{self, Case, Outcome, Settings, Truths, page};
 use crate::render::Renderer;
 
-/// Which cases, and where to.
+/// Which cases to run, and where to write the page.
 #[derive(Clone, Debug, Args)]
 pub struct HardCasesArgs {
-    /// Only cases whose name or family holds one of these words; without any, all.
+    /// Run only cases whose name or family contains one of these words. Default: all.
     #[arg(value_name = "WORD")]
     pub only: Vec<String>,
-    /// Folder for the page (`hard-cases.md`) and its pictures; made if it is not there.
+    /// Folder for the page (`hard-cases.md`) and its pictures; created if it does not exist.
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Frames of the case `thousands_of_small_renders`.
@@ -26,18 +26,18 @@ pub struct HardCasesArgs {
     pub renders: u32,
 }
 
-/// Runs the suite, prints a line for each case, and writes the page if asked to.
+/// Runs the suite, prints a line for each case, and writes the page if requested.
 ///
 /// # Errors
 ///
-/// [`CliError::HardCases`] when a case does not end as expected, [`CliError::Gpu`] when none can be run.
+/// [`CliError::HardCases`] if a case does not end as expected, [`CliError::Gpu`] if none can be run.
 pub fn run(args: &HardCasesArgs, config: &RenderConfig) -> Result<(), CliError> {
     let cases: Vec<&'static Case> = hard_cases::all()
         .filter(|case| is_wanted(case, &args.only))
         .collect();
     if cases.is_empty() {
         return Err(CliError::Usage(format!(
-            "no case's name or family holds {}",
+            "no case has a name or family that contains {}",
             args.only.join(" or ")
         )));
     }

@@ -1,4 +1,4 @@
-//! `caustica health`: would the service accept work? For containers without curl.
+//! `caustica health`: asks whether the service accepts work. For containers without curl.
 
 use std::io;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use super::error::CliError;
 /// Most bytes of an answer that are read.
 const MAX_ANSWER_BYTES: usize = 64 << 10;
 
-/// Whom to ask.
+/// Which service to ask.
 #[derive(Clone, Debug, Args)]
 pub struct HealthArgs {
     /// Address of the service.
@@ -25,9 +25,9 @@ pub struct HealthArgs {
 /// `http://host[:port][/prefix]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServiceUrl {
-    /// `host:port`, port 80 where none is given.
+    /// `host:port`; port 80 if none is given.
     pub authority: String,
-    /// What stands before `/readyz`, without a slash at its end.
+    /// The path before `/readyz`, without a trailing slash.
     pub prefix: String,
 }
 
@@ -45,7 +45,7 @@ impl std::str::FromStr for ServiceUrl {
         if !text.chars().all(is_plain) {
             return Err(refused());
         }
-        // The colons inside the brackets of an IPv6 address are not the port's.
+        // Skip the colons inside the brackets of an IPv6 address.
         let after_host = authority
             .rsplit_once(']')
             .map_or(authority, |(_, rest)| rest);
@@ -141,7 +141,7 @@ fn status_of(answer: &[u8]) -> Option<u16> {
     rest.split(' ').next()?.parse().ok()
 }
 
-/// The body, which says why, as one line.
+/// The body, which has the reason, as one line.
 fn body_of(answer: &[u8]) -> String {
     let text = String::from_utf8_lossy(answer);
     let body = text.split_once("\r\n\r\n").map_or("", |(_, body)| body);

@@ -1,9 +1,9 @@
-//! The command line: `args` says what may be typed, one file per command does it (`render`, `animate`, `accuracy`, `experiment`,
-//! `calibrate`, `plan`, `serve`, `selfcheck`, `health`), `error` knows the exit codes.
+//! The command line. `args` declares it, each command has a file (`render`, `animate`, `accuracy`, `experiment`, `calibrate`,
+//! `hard_cases`, `plan`, `serve`, `selfcheck`, `health`), and `error` has the exit codes.
 //!
-//! Around them: `scene_flags` makes a flag of every field of `quality` and `output`, `scene_file` reads a scene with its
-//! meshes, `frames` reads frame ranges and file name patterns, `picture` renders and encodes, `files` writes whole files or
-//! none, `summary` says in a terminal what a frame cost.
+//! Shared by the commands: `scene_flags` makes a flag of every field of `quality` and `output`, `scene_file` reads a scene with
+//! its meshes, `frames` reads frame ranges and file name patterns, `picture` renders and encodes, `files` writes files
+//! atomically, `progress` shows progress, `summary` prints the cost of a frame.
 
 pub mod accuracy;
 pub mod animate;

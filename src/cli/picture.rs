@@ -9,7 +9,7 @@ use crate::image::{Metadata, encode};
 use crate::render::{Prepared, Renderer};
 use crate::stats::Stats;
 
-/// A file in memory, and what it cost.
+/// An image file in memory, and its stats.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// The bytes of the PNG or EXR file.

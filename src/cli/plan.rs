@@ -1,4 +1,4 @@
-//! `caustica plan`: what would run, why, and how much memory it would hold.
+//! `caustica plan`: which passes would run, why, and the memory they would hold.
 
 use std::fmt::Write;
 
@@ -39,7 +39,7 @@ pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<()
         // Dials are chosen by trial renders.
         Renderer::new(config)?.plan_prepared(&prepared, &CancellationToken::new())?
     } else {
-        // For an empty GPU: no device is opened, so a plan can be had anywhere.
+        // Plan as if nothing were cached: no device is opened, so this works on any machine.
         let empty = NothingCached {
             arena_bytes: config.level_map_budget_bytes(),
         };

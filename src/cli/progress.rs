@@ -1,10 +1,10 @@
-//! How far long work is, on stderr.
+//! Progress of long work, on stderr.
 
 use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar of a thousand steps on stderr, if a person looks at it.
+/// A bar of a thousand steps on stderr if that is a terminal.
 pub(super) fn bar() -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -14,7 +14,7 @@ pub(super) fn bar() -> ProgressBar {
     ProgressBar::new(1000).with_style(style)
 }
 
-/// A bar for a person; where none looks, a line for each step, so that a log shows that the program works and on what.
+/// A bar on a terminal; otherwise a line for each step, so that a log shows what the program is doing.
 pub(super) struct Progress {
     bar: ProgressBar,
     lines: bool,
@@ -28,7 +28,7 @@ impl Progress {
         }
     }
 
-    /// The step that begins; saying it again changes nothing.
+    /// Shows the step that begins. Repeating the same step changes nothing.
     pub(super) fn say(&self, step: &str) {
         if self.bar.message() == step {
             return;
@@ -39,7 +39,7 @@ impl Progress {
         }
     }
 
-    /// The finished part, 0 … 1.
+    /// Shows the finished part, 0 … 1.
     pub(super) fn at(&self, part: f64) {
         self.bar.set_position((1000.0 * part) as u64);
     }

@@ -12,7 +12,7 @@ use crate::config::{Limits, RenderConfig};
 use crate::render::{Prepared, RenderError, Renderer};
 use crate::stats::Stats;
 
-/// What to render, and where to.
+/// What to render, and where to write it.
 #[derive(Clone, Debug, Args)]
 pub struct RenderArgs {
     /// The scene.
@@ -26,11 +26,11 @@ pub struct RenderArgs {
     pub stats: Option<PathBuf>,
 }
 
-/// Renders a scene to a file, and says on stderr what it cost.
+/// Renders a scene to a file, and prints its cost to stderr.
 ///
 /// # Errors
 ///
-/// Anything from a bad scene to a full disk; the file is then not there, or what it was before.
+/// Anything from a bad scene to a full disk. An existing file is then unchanged.
 pub fn run(args: &RenderArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let start = Instant::now();
     let format = files::format_of(&args.output)?;
@@ -53,7 +53,7 @@ pub fn run(args: &RenderArgs, config: &RenderConfig, limits: &Limits) -> Result<
     Ok(())
 }
 
-/// Where the statistics go, if not to stdout.
+/// The file for the statistics, unless they go to stdout.
 fn stats_file(args: &RenderArgs) -> Option<&Path> {
     args.stats.as_deref().filter(|path| *path != Path::new("-"))
 }

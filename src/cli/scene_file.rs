@@ -1,4 +1,4 @@
-//! A scene file with its meshes, which are paths relative to it.
+//! Reads a scene file and its meshes, which are named by paths relative to it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,7 +13,7 @@ use crate::methods;
 use crate::scene::parse::read_json;
 use crate::scene::{ImageFormat, Issue, ResolvedScene, Scene, SceneError, overrides};
 
-/// Marks a mesh that is named by content and not by path.
+/// Prefix of a mesh that is named by content id, not by path.
 const ID_PREFIX: &str = "blake3:";
 
 /// JSON pointer to the file format.
@@ -24,18 +24,18 @@ const FORMAT: &str = "/output/format";
 pub struct SceneFile {
     /// The scene; meshes are named by content id.
     pub resolved: ResolvedScene,
-    /// What the reader should know about the meshes, one sentence each.
+    /// Notes about the meshes for the user, one sentence each.
     pub notes: Vec<String>,
 }
 
 /// Reads the scene file, replaces fields, reads the meshes, and checks everything.
 ///
-/// `format` is what the name of the output file asks for; it wins over the scene.
+/// `format` is that of the output file's name; it takes precedence over the scene.
 ///
 /// # Errors
 ///
-/// [`CliError::Read`] for the scene file, [`CliError::Scene`] for all that is wrong with it, unreadable meshes included,
-/// [`CliError::Usage`] when `--format` contradicts `format`.
+/// [`CliError::Read`] for the scene file, [`CliError::Scene`] for all errors in it, unreadable meshes included,
+/// [`CliError::Usage`] if `--format` contradicts `format`.
 pub fn load(
     args: &SceneArgs,
     format: Option<ImageFormat>,
@@ -72,7 +72,7 @@ fn directory_of(path: &Path) -> &Path {
     path.parent().unwrap_or_else(|| Path::new(""))
 }
 
-/// The change that makes the scene's format that of the file's name.
+/// The override that sets the scene's format to that of the file's name.
 fn format_change(
     format: ImageFormat,
     changes: &[(String, String)],
@@ -90,7 +90,7 @@ fn format_change(
     }
 }
 
-/// Puts content ids in the place of paths.
+/// Replaces paths of meshes by content ids.
 fn with_meshes(
     mut scene: Scene,
     directory: &Path,
@@ -131,7 +131,7 @@ fn with_meshes(
     Err(SceneError { issues })
 }
 
-/// Reads an OBJ file, and the MTL file it names where that lies beside it; gives the mesh's id.
+/// Reads an OBJ file, and the MTL file it names if that is in the same directory. Returns the mesh's id.
 fn read_mesh(store: &MeshStore, path: &Path, notes: &mut Vec<String>) -> Result<String, String> {
     let obj = fs::read(path).map_err(|error| error.to_string())?;
     let mtl = read_material_library(&obj, path, notes);

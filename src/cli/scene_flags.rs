@@ -1,5 +1,5 @@
-//! A flag for every field of `quality` and `output`, and for every dial of a method: `--water-cells 512`, `--layers radiance,depth`,
-//! `--method planes --planes 101`.
+//! Flags for every field of `quality` and `output` and for every dial of a method: `--water-cells 512`, `--layers
+//! radiance,depth`, `--method planes --planes 101`.
 
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -9,7 +9,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use crate::methods;
 use crate::scene::overrides::Field;
 
-/// A scene file and what to change in it.
+/// A scene file, and the fields to replace in it.
 #[derive(Clone, Debug, Args)]
 pub struct SceneArgs {
     /// Scene file (JSON); `-` reads stdin. Meshes are paths relative to the file.
@@ -24,7 +24,7 @@ pub struct SceneArgs {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SceneOverrides(pub Vec<(String, String)>);
 
-/// A flag; clap keeps borrowed names only.
+/// A flag with static names, because clap keeps borrowed names only.
 struct Flag {
     pointer: String,
     long: String,
@@ -68,7 +68,7 @@ impl Args for SceneOverrides {
                 .help_heading(flag.heading)
                 .value_name(flag.value_name)
                 .action(ArgAction::Set)
-                // `--exposure-ev -1` and `--min-m -1,-1` are values, not flags.
+                // In `--exposure-ev -1` and `--min-m -1,-1`, the negative numbers are values, not flags.
                 .allow_hyphen_values(true)
         }))
     }

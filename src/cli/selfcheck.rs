@@ -1,4 +1,4 @@
-//! `caustica selfcheck`: does the GPU of this machine calculate as it should?
+//! `caustica selfcheck`: checks that the GPU of this machine computes correctly.
 
 use clap::Args;
 
@@ -8,7 +8,7 @@ use super::summary::{adapter, columns};
 use crate::config::RenderConfig;
 use crate::render::{Renderer, SelfCheck};
 
-/// How to say it.
+/// How to print the result.
 #[derive(Clone, Debug, Args)]
 pub struct SelfcheckArgs {
     /// Print JSON.
@@ -20,7 +20,7 @@ pub struct SelfcheckArgs {
 ///
 /// # Errors
 ///
-/// [`CliError::SelfCheck`] when a check is outside its tolerance, [`CliError::Gpu`] when it cannot be run.
+/// [`CliError::SelfCheck`] if a check is outside its tolerance, [`CliError::Gpu`] if it cannot be run.
 pub fn run(args: &SelfcheckArgs, config: &RenderConfig) -> Result<(), CliError> {
     let mut renderer = Renderer::new(config)?;
     let check = renderer.self_check()?;
@@ -49,7 +49,7 @@ pub fn in_words(check: &SelfCheck) -> String {
     columns(&rows, "")
 }
 
-/// A check that checked nothing has not passed.
+/// Fails if a check failed, or if nothing was checked.
 pub fn verdict(check: &SelfCheck) -> Result<(), CliError> {
     let all = check.checks.len();
     let failed = check.checks.iter().filter(|item| !item.passed).count();

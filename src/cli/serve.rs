@@ -7,11 +7,11 @@ use tracing_subscriber::EnvFilter;
 use super::error::CliError;
 use crate::config::{Limits, RenderConfig, ServeConfig};
 
-/// Serves until the process is told to stop.
+/// Serves until a signal ends the process.
 ///
 /// # Errors
 ///
-/// [`CliError::Serve`] when the service cannot start or breaks off.
+/// [`CliError::Serve`] if the service cannot start or fails.
 pub fn run(render: RenderConfig, limits: Limits, serve: ServeConfig) -> Result<(), CliError> {
     start_log(serve.log_json);
     tokio::runtime::Builder::new_multi_thread()
@@ -22,14 +22,14 @@ pub fn run(render: RenderConfig, limits: Limits, serve: ServeConfig) -> Result<(
         .map_err(|error| CliError::Serve(error.to_string()))
 }
 
-/// Logs to stderr from `info` up, or as the environment variable `RUST_LOG` says.
+/// Logs to stderr at level `info` and above, or as `RUST_LOG` says.
 fn start_log(json: bool) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info"));
     let log = tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(std::io::stderr)
         .with_ansi(std::io::stderr().is_terminal());
-    // A second log in the same process, as in tests, keeps to the first one's form.
+    // In a process that has a log already, as in tests, the first one's format stays.
     let _ = if json {
         log.json().try_init()
     } else {

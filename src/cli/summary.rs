@@ -1,4 +1,4 @@
-//! What a frame cost, for people.
+//! Summaries of frames for a terminal.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::picture::Picture;
 use crate::stats::{AccuracyStats, AdapterStats, ChosenDials, Stats};
 
-/// Where the picture is, and what it cost.
+/// The path of the picture, and its cost.
 pub fn of_picture(picture: &Picture, path: &Path, notes: &[String]) -> String {
     let [width, height] = picture.size;
     let stats = &picture.stats;
@@ -49,10 +49,12 @@ pub fn of_picture(picture: &Picture, path: &Path, notes: &[String]) -> String {
     columns(&rows, "")
 }
 
-/// How many frames were made.
+/// The number of frames rendered and skipped.
 pub fn of_animation(rendered: usize, skipped: usize, elapsed: Duration) -> String {
     let seconds = elapsed.as_secs_f64();
-    format!("{rendered} frames rendered, {skipped} were there, in {seconds:.1} s\n")
+    format!(
+        "{rendered} frames rendered, {skipped} skipped because their files exist, in {seconds:.1} s\n"
+    )
 }
 
 fn row(name: &str, text: String) -> Vec<String> {
@@ -68,14 +70,14 @@ pub fn adapter(adapter: &AdapterStats) -> String {
         software,
     } = adapter;
     let software = if *software {
-        ", software: a CPU does the work"
+        ", a software driver on the CPU"
     } else {
         ""
     };
     format!("{name} ({backend}, {driver}{software})")
 }
 
-/// Chosen dials, and how near the truth the frame thinks it is.
+/// Chosen dials, and the estimated error of the frame.
 fn accuracy_rows(accuracy: &AccuracyStats) -> Vec<Vec<String>> {
     let chosen = accuracy.chosen.as_ref().map(|chosen| {
         let cells = chosen.water_cells;
@@ -91,7 +93,7 @@ fn accuracy_rows(accuracy: &AccuracyStats) -> Vec<Vec<String>> {
     lines.map(|line| row("accuracy", line)).collect()
 }
 
-/// Error and time that chosen dials are predicted to give.
+/// Predicted error and time of chosen dials.
 pub fn predicted(chosen: &ChosenDials) -> String {
     format!(
         "error {}, {:.0} ms",
@@ -100,7 +102,7 @@ pub fn predicted(chosen: &ChosenDials) -> String {
     )
 }
 
-/// A share in percent, with three digits that count.
+/// A share in percent, with three significant digits.
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let digits = match percent {
@@ -138,7 +140,7 @@ fn times(stats: &Stats) -> String {
     )
 }
 
-/// A size with the unit that suits it.
+/// A size in a suitable unit.
 pub fn bytes(count: u64) -> String {
     const UNITS: [(&str, u64); 3] = [("GiB", 1 << 30), ("MiB", 1 << 20), ("KiB", 1 << 10)];
     for (unit, size) in UNITS {
@@ -149,7 +151,7 @@ pub fn bytes(count: u64) -> String {
     format!("{count} B")
 }
 
-/// Rows with their columns aligned, each after `indent`.
+/// Rows with aligned columns, each indented by `indent`.
 pub fn columns(rows: &[Vec<String>], indent: &str) -> String {
     let width_of = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column));

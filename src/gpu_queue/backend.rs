@@ -1,4 +1,4 @@
-//! What the GPU thread owns.
+//! The renderer that the GPU thread owns, as a trait.
 
 use std::sync::Arc;
 
@@ -14,27 +14,27 @@ use crate::stats::{AdapterStats, CacheStats};
 
 /// The renderer as the queue sees it. It is built on the GPU thread and never leaves it, so it need not be `Send`.
 pub trait RenderBackend {
-    /// Where it runs.
+    /// The adapter it runs on.
     fn adapter(&self) -> AdapterStats;
 
-    /// Hash of all that decides, besides the scene and the adapter, which dials are chosen where `quality` asks for an error or a time.
+    /// Hash of everything except scene and adapter that determines which dials are chosen for a target error or a time budget.
     fn dial_basis(&self) -> String;
 
-    /// What would run, given what is cached now; looks at the scene where dials are to be chosen.
+    /// Plans with what is cached now; makes trial renders if dials have to be chosen.
     fn plan(
         &mut self,
         prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Plan, RenderError>;
 
-    /// Renders; `cancel` is looked at between submissions.
+    /// Renders; `cancel` is checked between submissions.
     fn render(
         &mut self,
         prepared: &Prepared,
         cancel: &CancellationToken,
     ) -> Result<Frame, RenderError>;
 
-    /// Builds level maps of a mesh for frames to come, and says of each sun what is ready.
+    /// Builds level maps of a mesh for later frames, and reports for each sun which maps are ready.
     fn warm(
         &mut self,
         mesh: &Arc<Mesh>,
@@ -42,7 +42,7 @@ pub trait RenderBackend {
         cancel: &CancellationToken,
     ) -> Result<Vec<WarmedMap>, RenderError>;
 
-    /// Compares this machine with float64 physics.
+    /// Runs the self-check: compares the GPU with float64 physics.
     fn self_check(&mut self) -> Result<SelfCheck, GpuError>;
 
     /// Frees what is cached for a mesh.
@@ -51,8 +51,8 @@ pub trait RenderBackend {
     /// The level-map cache since the start (hits, misses, evictions) and now (entries, bytes).
     fn level_map_cache(&self) -> CacheStats;
 
-    /// Called about once a second while there is nothing to do. An error of a lost device makes the queue rebuild the backend
-    /// before the next request pays for it.
+    /// Called about once a second while there is nothing to do. If it reports a lost device, the queue rebuilds the backend
+    /// before the next request arrives.
     fn idle(&mut self) -> Result<(), GpuError> {
         Ok(())
     }

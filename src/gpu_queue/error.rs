@@ -1,34 +1,34 @@
-//! Why a job has no answer.
+//! Errors of a job.
 
 use crate::render::RenderError;
 
-/// Why a job has no answer.
+/// Why a job failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JobError {
-    /// Every place in the queue is taken; nothing was queued.
-    #[error("{waiting} requests are waiting already, which is the most that may")]
+    /// Every place in the queue is taken. Nothing was queued.
+    #[error("{waiting} requests are waiting already, the maximum")]
     QueueFull {
         /// Places in the queue.
         waiting: usize,
-        /// When to try again, s, from the time that recent jobs took.
+        /// When to try again, s, estimated from the time of recent jobs.
         retry_after_s: u64,
     },
-    /// The deadline passed, in the queue or while the job ran; it never starts, or is cancelled.
+    /// The deadline passed. A waiting job never starts; a running one is cancelled.
     #[error("no result within {deadline_s} s of arrival")]
     DeadlinePassed {
         /// Time allowed from arrival, s.
         deadline_s: f64,
     },
-    /// The service is shutting down, or nobody waits any more.
+    /// The service is shutting down, or the caller no longer waits.
     #[error("cancelled")]
     Cancelled,
-    /// There is no working device, and it is not being rebuilt at this moment.
+    /// There is no working device, and none is being rebuilt.
     #[error("no GPU to run on: {0}")]
     Unavailable(String),
-    /// The backend panicked: a defect of ours. It has been rebuilt.
+    /// The backend panicked, which is a defect. It has been rebuilt.
     #[error("the renderer panicked: {0}")]
     Panicked(String),
-    /// The backend said no.
+    /// The backend returned an error.
     #[error(transparent)]
     Render(#[from] RenderError),
 }

@@ -1,4 +1,4 @@
-//! One piece of work and who waits for it.
+//! A job: its work and the caller who waits for it.
 
 use std::time::Duration;
 
@@ -10,29 +10,29 @@ use super::error::JobError;
 use super::place::Place;
 use crate::render::RenderError;
 
-/// What a job is told when it runs.
+/// What a job gets when it runs.
 pub(super) struct JobContext<'a> {
-    /// Set when nobody waits any more.
+    /// Set when the caller no longer waits.
     pub(super) cancel: &'a CancellationToken,
-    /// From arrival until the thread took the job up.
+    /// Time from arrival until the thread took the job.
     pub(super) queued: Duration,
 }
 
-/// A job on its way to the thread, or running.
+/// A job that is being sent to the thread, or runs.
 pub(super) struct Job {
-    /// What to do and whom to tell.
+    /// The work, and where its result is delivered.
     pub(super) work: Box<dyn Work>,
-    /// Set when nobody waits any more.
+    /// Set when the caller no longer waits.
     pub(super) cancel: CancellationToken,
-    /// The place in the queue, given back when the work has ended.
+    /// The place in the queue, released when the work has ended.
     pub(super) place: Place,
-    /// The right to the thread, given back with the place.
+    /// The permit to use the thread, released together with the place.
     pub(super) _thread: OwnedSemaphorePermit,
 }
 
 /// Work that can be run again after a device loss.
 pub(super) trait Work: Send {
-    /// Runs once. A success is delivered; an error is returned, for the caller to decide between another try and `fail`.
+    /// Runs once. A success is delivered; an error is returned, and the caller decides whether to retry or to `fail`.
     fn run(
         &mut self,
         backend: &mut dyn RenderBackend,
@@ -53,7 +53,7 @@ impl<T, F> Typed<T, F>
 where
     F: FnMut(&mut dyn RenderBackend, &JobContext<'_>) -> Result<T, RenderError>,
 {
-    /// Pairs work with where its answer goes.
+    /// Work whose answer goes to `reply`.
     pub(super) fn new(call: F, reply: oneshot::Sender<Result<T, JobError>>) -> Self {
         Self {
             call,
@@ -74,7 +74,7 @@ where
     ) -> Result<(), RenderError> {
         let answer = (self.call)(backend, context)?;
         if let Some(reply) = self.reply.take() {
-            // The receiver may be gone: then nobody wants the answer.
+            // The receiver may be gone; the answer is then dropped.
             let _ = reply.send(Ok(answer));
         }
         Ok(())

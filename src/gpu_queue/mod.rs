@@ -1,16 +1,16 @@
-//! The one road to the GPU: a bounded queue in front of one thread.
+//! The only access to the GPU: a bounded queue in front of one thread.
 //!
 //! * [`backend`]: what the thread owns, as a trait, so that tests need no GPU;
-//! * [`error`]: why a job has no answer;
-//! * [`job`]: one piece of work and who waits for it;
-//! * [`place`]: the right to hand in a job;
-//! * [`queue`]: admission, deadline and cancellation, on the side of the callers;
-//! * [`status`]: the state machine of the device, as everybody sees it;
-//! * [`worker`]: the thread: building, running, recovering.
+//! * [`error`]: why a job failed;
+//! * [`job`]: work and the caller who waits for it;
+//! * [`place`]: a place in the queue, the right to submit a job;
+//! * [`queue`]: admission, deadline and cancellation, on the callers' side;
+//! * [`status`]: the state of the device, published to all;
+//! * [`worker`]: the thread, which builds the backend, runs jobs and recovers.
 //!
-//! A caller takes a place in the queue or is refused at once, prepares its scene, then waits for the worker until its deadline. Places
-//! are held until the work has really ended, not until the caller loses interest, so an abandoned render cannot be overtaken by a
-//! second one.
+//! A caller takes a place in the queue or is refused at once, prepares its scene, then waits for the worker until its deadline. A
+//! place is held until the work has ended, even if the caller has left before. So an abandoned render still counts against the
+//! limit while it runs.
 
 pub mod backend;
 pub mod error;

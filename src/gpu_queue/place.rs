@@ -1,4 +1,4 @@
-//! A place in the queue, from before a scene is prepared until its job has ended.
+//! A place in the queue, held from before a scene is prepared until its job has ended.
 
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -7,14 +7,14 @@ use tokio::sync::OwnedSemaphorePermit;
 
 use super::queue::lock;
 
-/// A place in the queue. Whoever is to be refused does not get one, and is so before any work is done for it.
+/// A place in the queue. A request that gets none is refused before any work is done for it.
 #[derive(Debug)]
 pub struct Place {
     pub(super) arrival: Instant,
     /// When it was taken.
     since: Instant,
     held: Held,
-    /// Given back with the place.
+    /// Released together with the place.
     _permit: OwnedSemaphorePermit,
 }
 
@@ -36,19 +36,19 @@ impl Place {
 impl Drop for Place {
     fn drop(&mut self) {
         let mut all = lock(&self.held.0);
-        // Those taken at the same instant are alike.
+        // Places taken at the same instant are interchangeable.
         if let Some(index) = all.iter().position(|since| *since == self.since) {
             all.swap_remove(index);
         }
     }
 }
 
-/// When each place that is held now was taken.
+/// The times at which the places held now were taken.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Held(Arc<Mutex<Vec<Instant>>>);
 
 impl Held {
-    /// Whether somebody may have looked up meshes before `moment` and still has a job to run.
+    /// Whether a request that may have looked up its meshes before `moment` still has a job to run.
     pub(super) fn since_before(&self, moment: Instant) -> bool {
         lock(&self.0).iter().any(|since| *since <= moment)
     }

@@ -26,12 +26,12 @@ use crate::render::{Prepared, RenderError, SelfCheck};
 /// Name of the GPU thread.
 pub const THREAD_NAME: &str = "caustica-gpu";
 
-/// Size and patience of the queue.
+/// Size and deadline of the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QueueSettings {
-    /// Jobs that may wait while one runs; one more is refused.
+    /// Jobs that may wait while one runs. One more is refused.
     pub waiting: usize,
-    /// Time from arrival after which a caller is told that the deadline passed.
+    /// Time from arrival after which a caller gets [`JobError::DeadlinePassed`].
     pub deadline: Duration,
 }
 
@@ -44,10 +44,10 @@ pub struct GpuQueue {
 #[derive(Debug)]
 struct Shared {
     settings: QueueSettings,
-    /// Jobs that are prepared, wait or run: `waiting` + 1 places.
+    /// A permit for each job that is prepared, waits or runs: `waiting` + 1 in all.
     places: Arc<Semaphore>,
     held: Held,
-    /// The right to hand a job to the thread: 1 permit.
+    /// The permit to send a job to the thread: 1 in all.
     thread: Arc<Semaphore>,
     sender: Mutex<Option<SyncSender<Job>>>,
     join: Mutex<Option<JoinHandle<()>>>,
@@ -57,15 +57,15 @@ struct Shared {
 }
 
 impl GpuQueue {
-    /// Starts the thread, which builds its backend with `factory`, and again after each loss.
+    /// Starts the thread. It builds its backend with `factory`, and rebuilds it after each loss.
     ///
     /// # Errors
-    /// When the operating system refuses a thread.
+    /// If the operating system refuses a thread.
     pub fn start<F>(settings: QueueSettings, factory: F) -> io::Result<Self>
     where
         F: FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send + 'static,
     {
-        // One job at most is on its way, since a sender holds the thread's only permit.
+        // At most one job is in the channel, since its sender holds the thread's only permit.
         let (sender, jobs) = std::sync::mpsc::sync_channel(1);
         let (publish, status) = watch::channel(GpuStatus::default());
         let forgotten = Forgotten::default();
@@ -95,10 +95,12 @@ impl GpuQueue {
         })
     }
 
-    /// A place in the queue for a request that arrived at `arrival`, its meshes looked up; to be had before its scene is prepared.
+    /// A place in the queue for a request that arrived at `arrival` and has looked up its meshes. It is taken before the scene is
+    /// prepared.
     ///
     /// # Errors
-    /// [`JobError::QueueFull`], at once, and where nothing can run: [`JobError::Unavailable`], [`JobError::Cancelled`].
+    /// [`JobError::QueueFull`] at once if there is no place; [`JobError::Unavailable`] or [`JobError::Cancelled`] if
+    /// nothing can run.
     pub fn place(&self, arrival: Instant) -> Result<Place, JobError> {
         let shared = &self.shared;
         if let GpuState::Failed(why) = &shared.status.borrow().state {
@@ -110,7 +112,7 @@ impl GpuQueue {
         Ok(Place::new(arrival, shared.held.clone(), permit))
     }
 
-    /// Renders. The time from arrival until the thread took the job up, less that of preparing the scene, goes into
+    /// Renders. The time from arrival until the thread took the job, minus the time to prepare the scene, goes into
     /// `stats.time_ms.queue`.
     ///
     /// # Errors
@@ -119,14 +121,14 @@ impl GpuQueue {
         self.submit(place, move |backend, context| {
             let mut frame = backend.render(&prepared, context.cancel)?;
             let queued_ms = context.queued.as_secs_f64() * 1e3;
-            // Preparing is in `plan`. It may have been done before the request arrived.
+            // The time to prepare is in `plan`. The scene may have been prepared before the request arrived.
             frame.stats.time_ms.queue = (queued_ms - prepared.took_ms()).max(0.0);
             Ok(frame)
         })
         .await
     }
 
-    /// Plans with what is cached now; nothing runs on the GPU but the looks by which dials are chosen.
+    /// Plans with what is cached now. Nothing runs on the GPU except trial renders to choose dials.
     ///
     /// # Errors
     /// As [`GpuQueue::render`].
@@ -137,10 +139,10 @@ impl GpuQueue {
         .await
     }
 
-    /// Builds level maps of a mesh for frames to come, and says of each sun what is ready.
+    /// Builds level maps of a mesh for later frames, and reports for each sun which maps are ready.
     ///
     /// # Errors
-    /// As [`GpuQueue::render`]; level maps that were finished by then stay.
+    /// As [`GpuQueue::render`]. Level maps finished before the error stay.
     pub async fn warm(
         &self,
         mesh: Arc<Mesh>,
@@ -153,7 +155,7 @@ impl GpuQueue {
         .await
     }
 
-    /// Compares this machine with float64 physics once more.
+    /// Runs the self-check again: compares the GPU with float64 physics.
     ///
     /// # Errors
     /// As [`GpuQueue::render`].
@@ -164,23 +166,23 @@ impl GpuQueue {
         .await
     }
 
-    /// Frees what is cached for a mesh: before the next job, or within about a second; and what jobs that were handed in before
-    /// still build for it, after them. Never waits and never fails.
+    /// Frees what is cached for a mesh, before the next job or within about a second. What jobs submitted earlier still build for
+    /// the mesh is freed after them. Never waits and never fails.
     pub fn forget_mesh(&self, id: &str) {
         lock(&self.shared.forgotten).insert(id.to_owned(), Instant::now());
     }
 
-    /// What is known about the device now; never waits for a job.
+    /// The present state of the device; never waits for a job.
     pub fn status(&self) -> GpuStatus {
         self.shared.status.borrow().clone()
     }
 
-    /// The same, to be waited on.
+    /// Like [`GpuQueue::status`], as a channel to wait for changes.
     pub fn watch(&self) -> watch::Receiver<GpuStatus> {
         self.shared.status.clone()
     }
 
-    /// Size and patience.
+    /// Size and deadline.
     pub fn settings(&self) -> QueueSettings {
         self.shared.settings
     }
@@ -190,7 +192,7 @@ impl GpuQueue {
         (self.shared.settings.waiting + 1).saturating_sub(self.shared.places.available_permits())
     }
 
-    /// Cancels what runs, refuses what waits, and blocks until the thread has ended and the device is freed.
+    /// Cancels the running job, refuses the waiting ones, and blocks until the thread has ended and the device is freed.
     pub fn close(&self) {
         self.shared.closing.cancel();
         self.shared.places.close();
@@ -198,7 +200,7 @@ impl GpuQueue {
         drop(lock(&self.shared.sender).take());
         let join = lock(&self.shared.join).take();
         if let Some(join) = join {
-            // A panic outside the guarded calls has been printed by the panic hook; there is nothing left to end.
+            // The panic hook has printed a panic outside the guarded calls; the thread has ended already.
             let _ = join.join();
         }
     }
@@ -216,7 +218,7 @@ impl GpuQueue {
             deadline_s: shared.settings.deadline.as_secs_f64(),
         };
 
-        // The thread, until the deadline. A future dropped here has queued nothing.
+        // Wait for the thread until the deadline. If the future is dropped here, nothing has been queued.
         let thread = timeout_at(deadline, Arc::clone(&shared.thread).acquire_owned())
             .await
             .map_err(late)?
@@ -257,7 +259,7 @@ impl GpuQueue {
     }
 }
 
-/// A lock whose poison is of no interest: the values are replaced whole.
+/// Locks a mutex and ignores poisoning: values are only replaced as a whole.
 pub(super) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,9 +1,9 @@
-//! The state machine of the device, as everybody sees it.
+//! The state of the device, as published to all.
 
 use crate::render::SelfCheck;
 use crate::stats::{AdapterStats, CacheStats};
 
-/// Where the device stands.
+/// The state of the device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum GpuState {
     /// Being opened for the first time.
@@ -11,27 +11,28 @@ pub enum GpuState {
     Initializing,
     /// Jobs run.
     Ready,
-    /// The device is gone (reason) and is being rebuilt; jobs wait for it.
+    /// The device is lost (reason) and is being rebuilt; jobs wait for it.
     Lost(String),
-    /// It could not be opened (reason); jobs are refused. Tried again every few seconds, except that the first failure ends
-    /// `caustica serve`.
+    /// The device could not be opened (reason); jobs are refused. Opening is retried every few seconds, but the first failure
+    /// ends `caustica serve`.
     Failed(String),
 }
 
 /// What is known about the device and its thread.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GpuStatus {
-    /// Where the device stands.
+    /// The state of the device.
     pub state: GpuState,
-    /// The adapter last opened; absent until the first one is.
+    /// The adapter opened last; absent before the first.
     pub adapter: Option<AdapterStats>,
-    /// What dials are chosen by on that adapter, as a hash; see [`RenderBackend::dial_basis`](super::RenderBackend::dial_basis).
+    /// Hash of what determines the chosen dials on that adapter; see
+    /// [`RenderBackend::dial_basis`](super::RenderBackend::dial_basis).
     pub dial_basis: String,
-    /// Result of comparing it with float64 physics; absent until it has run on the present device.
+    /// Result of the self-check (GPU against float64 physics); absent until it has run on the present device.
     pub self_check: Option<SelfCheck>,
-    /// How often a device was lost or given up since the start.
+    /// Number of devices lost or given up since the start.
     pub losses: u64,
-    /// The level-map cache after the last job: counts since the start, whatever devices were lost, and what is held now.
+    /// The level-map cache after the last job: counts since the start, over all devices, and what it holds now.
     pub level_maps: CacheStats,
     /// Typical wall time of a job, s; 0 before the first.
     pub job_s: f64,

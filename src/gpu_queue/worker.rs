@@ -1,4 +1,4 @@
-//! The GPU thread: builds the backend, runs jobs, and recovers from loss and panic.
+//! The GPU thread: builds the backend, runs jobs, and recovers from device loss and panics.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -18,7 +18,7 @@ use crate::gpu::GpuError;
 use crate::render::{RenderError, SelfCheck, SelfCheckItem};
 use crate::stats::CacheStats;
 
-/// How long the thread sleeps when there is nothing to do; a device lost in idleness is noticed within this.
+/// How long the thread sleeps when there is nothing to do. The loss of an idle device is noticed within this time.
 const IDLE_PERIOD: Duration = Duration::from_secs(1);
 
 /// Pause between tries to open a device that could not be opened.
@@ -27,12 +27,12 @@ const REOPEN_PERIOD: Duration = Duration::from_secs(5);
 /// Weight of the newest job in the typical job time.
 const JOB_TIME_WEIGHT: f64 = 0.25;
 
-/// Ids of deleted meshes, with when that was.
+/// Ids of deleted meshes, with the time of deletion.
 pub(super) type Forgotten = Arc<Mutex<BTreeMap<String, Instant>>>;
 
 type Factory = Box<dyn FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send>;
 
-/// How one run of a job ended, if not with an answer.
+/// How a run of a job failed.
 enum Failure {
     /// The backend returned an error.
     Error(RenderError),
@@ -48,7 +48,7 @@ pub(super) struct Worker {
     forgotten: Forgotten,
     held: Held,
     last_try: Instant,
-    /// What the level-map caches of devices that are gone have counted.
+    /// Counts of the level-map caches of earlier devices.
     gone: CacheStats,
 }
 
@@ -71,7 +71,7 @@ impl Worker {
         }
     }
 
-    /// Runs until all senders are gone.
+    /// Runs until all senders are dropped.
     pub(super) fn run(mut self) {
         let mut backend = self.open();
         loop {
@@ -84,7 +84,7 @@ impl Worker {
         discard(&mut backend);
     }
 
-    /// Builds a backend, proves it, and publishes what came of it.
+    /// Builds a backend, runs the self-check, and publishes the result.
     fn open(&mut self) -> Option<Box<dyn RenderBackend>> {
         self.last_try = Instant::now();
         let opened = catch_unwind(AssertUnwindSafe(|| {
@@ -132,7 +132,7 @@ impl Worker {
             status.state = GpuState::Lost(why.to_owned());
             status.self_check = None;
             status.losses += 1;
-            // What was cached is gone with the device; what was counted is not.
+            // The cache is lost with the device; its counts are kept.
             self.gone = status.level_maps.clone();
             (status.level_maps.entries, status.level_maps.bytes) = (0, 0);
         });
@@ -147,7 +147,7 @@ impl Worker {
                 match polled {
                     Ok(Ok(())) => {
                         self.after_work(present);
-                        // Whoever looked up a deleted mesh would have a place by now.
+                        // A request that looked up the mesh before it was deleted has a place by now.
                         lock(&self.forgotten).retain(|_, deleted| {
                             deleted.elapsed() < IDLE_PERIOD || self.held.since_before(*deleted)
                         });
@@ -162,12 +162,12 @@ impl Worker {
         }
     }
 
-    /// Runs one job to its end: an answer, an error, or the second loss.
+    /// Runs one job until it has an answer or an error, or the device is lost a second time.
     fn serve(&mut self, backend: &mut Option<Box<dyn RenderBackend>>, mut job: Job) {
         let queued = job.place.arrival.elapsed();
         let mut may_retry = true;
         loop {
-            // Between arrival and now everybody may have left, and the device too.
+            // Since arrival, the caller may have left and the device may have been lost.
             if job.cancel.is_cancelled() {
                 return job.work.fail(JobError::Cancelled);
             }
@@ -184,7 +184,7 @@ impl Worker {
                 queued,
             };
             let attempted = attempt(&mut job.work, &mut **present, &context, &self.forgotten);
-            // This job and those whose scenes are being prepared may hold meshes that were deleted since they took their places.
+            // This job, and jobs whose scenes are being prepared, may hold meshes deleted after they took their places.
             lock(&self.forgotten).retain(|_, deleted| self.held.since_before(*deleted));
             match attempted {
                 Ok(()) => {
@@ -193,7 +193,7 @@ impl Worker {
                 }
                 Err(Failure::Error(RenderError::Gpu(error))) if is_loss(&error) => {
                     self.reopen(backend, &error.to_string());
-                    // A hang is not tried again: it would hold everybody up twice.
+                    // A job that hangs is not retried: it would block the queue twice.
                     if !may_retry || matches!(error, GpuError::Timeout(_)) {
                         return job.work.fail(RenderError::Gpu(error).into());
                     }
@@ -207,7 +207,7 @@ impl Worker {
                     return job.work.fail(error.into());
                 }
                 Err(Failure::Panic(message)) => {
-                    // Rebuilt first, so that whoever reads the answer finds the service whole.
+                    // Rebuild before answering, so that the service works again when the caller reads the answer.
                     self.reopen(backend, &format!("the renderer panicked: {message}"));
                     return job.work.fail(JobError::Panicked(message));
                 }
@@ -226,7 +226,7 @@ impl Worker {
         });
     }
 
-    /// A cache of the present device, with the counts of those that are gone.
+    /// The cache statistics of the present device, plus the counts of earlier devices.
     fn since_the_start(&self, cache: &CacheStats) -> CacheStats {
         CacheStats {
             hits: self.gone.hits + cache.hits,
@@ -236,7 +236,7 @@ impl Worker {
         }
     }
 
-    /// Frees what was forgotten and publishes the state of the cache.
+    /// Frees what is cached for deleted meshes, and publishes the state of the cache.
     fn after_work(&self, backend: &mut Box<dyn RenderBackend>) {
         let forgotten = &self.forgotten;
         let cache = catch_unwind(AssertUnwindSafe(|| {
@@ -258,9 +258,9 @@ impl Worker {
     }
 }
 
-/// One guarded run of a job.
+/// Runs a job once and catches its panics.
 ///
-/// The backend is thrown away after a panic, so nothing half-changed is seen again.
+/// After a panic the backend is discarded, so an inconsistent state is never used.
 fn attempt(
     work: &mut Box<dyn super::job::Work>,
     backend: &mut dyn RenderBackend,
@@ -277,14 +277,14 @@ fn attempt(
     }
 }
 
-/// Frees what is cached for deleted meshes, and again while jobs may run that were handed in with such a mesh before.
+/// Frees what is cached for deleted meshes. Repeat it as long as jobs may run that were submitted with such a mesh before.
 fn forget(backend: &mut dyn RenderBackend, forgotten: &Mutex<BTreeMap<String, Instant>>) {
     for id in lock(forgotten).keys() {
         backend.forget_mesh(id);
     }
 }
 
-/// Drops a backend; a panic while doing so must not take the thread along.
+/// Drops a backend. A panic while dropping must not end the thread.
 fn discard(backend: &mut Option<Box<dyn RenderBackend>>) {
     if let Some(old) = backend.take()
         && let Err(panic) = catch_unwind(AssertUnwindSafe(move || drop(old)))
@@ -296,12 +296,12 @@ fn discard(backend: &mut Option<Box<dyn RenderBackend>>) {
     }
 }
 
-/// Whether the device is of no use any more.
+/// Whether the device can no longer be used.
 fn is_loss(error: &GpuError) -> bool {
     matches!(error, GpuError::DeviceLost(_) | GpuError::Timeout(_))
 }
 
-/// A check that checked nothing has not passed.
+/// A self-check without any check counts as failed.
 fn judged(mut check: SelfCheck) -> SelfCheck {
     if check.checks.is_empty() {
         check.passed = false;

@@ -1,23 +1,23 @@
-//! Which representation of a render the client wants (RFC 9110, 12.5.1).
+//! Content negotiation: the representation that the client prefers (RFC 9110, 12.5.1).
 
 use axum::http::{HeaderMap, header};
 
 use super::error::ApiError;
 use crate::scene::ImageFormat;
 
-/// What a render is answered with.
+/// The representation of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Representation {
-    /// The file as it is.
+    /// The image file itself.
     Image,
     /// JSON with the file in base64 and the stats.
     Json,
 }
 
-/// Picks the representation that the `Accept` header prefers; the image on a draw, or without the header.
+/// Picks the representation that the `Accept` header prefers; the image if both are equal or there is no header.
 ///
 /// # Errors
-/// [`ApiError::NotAcceptable`] when both are excluded.
+/// [`ApiError::NotAcceptable`] if both are excluded.
 pub fn choose(headers: &HeaderMap, format: ImageFormat) -> Result<Representation, ApiError> {
     let image_type = media_type(format);
     Ok(match best(headers, &[image_type, "application/json"])? {
@@ -26,10 +26,10 @@ pub fn choose(headers: &HeaderMap, format: ImageFormat) -> Result<Representation
     })
 }
 
-/// Picks the media type that the `Accept` header prefers; the first on a draw, or without the header.
+/// Picks the media type that the `Accept` header prefers; the first of several equals, or if there is no header.
 ///
 /// # Errors
-/// [`ApiError::NotAcceptable`] when all are excluded.
+/// [`ApiError::NotAcceptable`] if all are excluded.
 pub fn best<'a>(headers: &HeaderMap, offered: &[&'a str]) -> Result<&'a str, ApiError> {
     let ranges: Vec<&str> = headers
         .get_all(header::ACCEPT)
@@ -64,7 +64,7 @@ pub fn media_type(format: ImageFormat) -> &'static str {
     }
 }
 
-/// Weight of a media type: that of the most specific range that covers it, 0 when none does.
+/// Weight of a media type: that of the most specific range that covers it, 0 if none does.
 fn quality(ranges: &[&str], media_type: &str) -> f32 {
     let main_type = media_type.split('/').next().unwrap_or_default();
     ranges

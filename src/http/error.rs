@@ -1,4 +1,4 @@
-//! Every way to fail, and its status: the only file that knows status codes of failures.
+//! All errors and their status: the only file with status codes of failures.
 
 use std::any::Any;
 
@@ -27,11 +27,11 @@ pub enum Reason {
     /// The request has to change.
     #[default]
     Request,
-    /// Nobody: there is too much to do at the moment.
+    /// Nobody: the service is overloaded at the moment.
     Capacity,
-    /// Nobody, or whoever runs the service: the GPU or the process is not in a state to work.
+    /// Nobody, or the operator of the service: the GPU or the process is not able to work.
     Device,
-    /// We: a defect of the program.
+    /// The developers: a defect of the program.
     Defect,
 }
 
@@ -73,33 +73,33 @@ macro_rules! problem_kinds {
 
 problem_kinds! {
     /// 400: the body of a scene request is not JSON, or has a number that no 64-bit float holds.
-    MalformedJson = BAD_REQUEST, "malformed-json", "The body is not JSON that can be read", Request;
+    MalformedJson = BAD_REQUEST, "malformed-json", "The body is not readable JSON", Request;
     /// 400: the body cannot be read (broken multipart, connection trouble).
     MalformedBody = BAD_REQUEST, "malformed-body", "The body cannot be read", Request;
-    /// 400: a parameter in the query of the address is not valid.
-    InvalidQuery = BAD_REQUEST, "invalid-query", "The query of the address is not valid", Request;
+    /// 400: a parameter in the URL's query is not valid.
+    InvalidQuery = BAD_REQUEST, "invalid-query", "The query of the URL is not valid", Request;
     /// 404: no such route.
     NotFound = NOT_FOUND, "not-found", "There is nothing at this address", Request;
     /// 404: no mesh of that id.
     UnknownMesh = NOT_FOUND, "unknown-mesh", "There is no such mesh", Request;
-    /// 405: the route exists, the method does not; `Allow` lists those that do.
+    /// 405: the route does not support the method; `Allow` lists those it supports.
     MethodNotAllowed = METHOD_NOT_ALLOWED, "method-not-allowed", "The method is not supported here", Request;
     /// 406: none of the representations is acceptable.
     NotAcceptable = NOT_ACCEPTABLE, "not-acceptable", "No acceptable representation", Request;
     /// 413: the body is larger than `limits.max_body_bytes`.
     BodyTooLarge = PAYLOAD_TOO_LARGE, "body-too-large", "The body is too large", Request;
-    /// 415: the body has a type that is not read here.
+    /// 415: the route does not accept the body's media type.
     UnsupportedMediaType = UNSUPPORTED_MEDIA_TYPE, "unsupported-media-type", "The body has an unsupported type", Request;
-    /// 422: the scene is JSON but says something impossible.
+    /// 422: the scene is JSON but not valid.
     InvalidScene = UNPROCESSABLE_ENTITY, "invalid-scene", "The scene is not valid", Request;
-    /// 422: the scene is above a limit of this installation and has no other fault.
-    LimitExceeded = UNPROCESSABLE_ENTITY, "limit-exceeded", "The scene is above a limit", Request;
-    /// 422: the scene names meshes that are not in the store and has no other fault.
+    /// 422: the scene exceeds a limit of this installation and has no other error.
+    LimitExceeded = UNPROCESSABLE_ENTITY, "limit-exceeded", "The scene exceeds a limit", Request;
+    /// 422: the scene names meshes that are not in the store and has no other error.
     MissingMesh = UNPROCESSABLE_ENTITY, "missing-mesh", "The scene names a mesh that is not stored", Request;
     /// 422: the mesh cannot be used.
     InvalidMesh = UNPROCESSABLE_ENTITY, "invalid-mesh", "The mesh is not valid", Request;
-    /// 422: there is no float64 truth of what the scene asks for, or nothing in it to be relative to.
-    NoTruth = UNPROCESSABLE_ENTITY, "no-truth", "There is no truth to compare with", Request;
+    /// 422: the float64 reference cannot compute the requested output, or the output is dark, so that no relative error exists.
+    NoTruth = UNPROCESSABLE_ENTITY, "no-truth", "There is no reference to compare with", Request;
     /// 422: the plan needs more GPU memory than is allowed.
     OverBudget = UNPROCESSABLE_ENTITY, "over-budget", "The scene needs too much GPU memory", Request;
     /// 429: the queue is full; `Retry-After` says when to try again.
@@ -114,7 +114,7 @@ problem_kinds! {
     DeviceLost = SERVICE_UNAVAILABLE, "device-lost", "The GPU device was lost", Device;
     /// 503: the GPU has no memory left although the plan was within its budget.
     OutOfGpuMemory = SERVICE_UNAVAILABLE, "out-of-gpu-memory", "The GPU is out of memory", Device;
-    /// 503: the process is ending.
+    /// 503: the service is shutting down.
     ShuttingDown = SERVICE_UNAVAILABLE, "shutting-down", "The service is shutting down", Device;
     /// 507: the mesh store has no room.
     MeshStoreFull = INSUFFICIENT_STORAGE, "mesh-store-full", "The mesh store is full", Capacity;
@@ -126,23 +126,23 @@ impl ProblemKind {
         matches!(self.reason(), Reason::Capacity | Reason::Device)
     }
 
-    /// Whether `Retry-After` says when: not for a mesh store, which somebody has to clear.
+    /// Whether `Retry-After` is sent: not for a full mesh store, from which meshes have to be deleted first.
     pub fn sends_retry_after(self) -> bool {
         self.retryable() && self != Self::MeshStoreFull
     }
 }
 
-/// Why a request has no good answer.
+/// Why a request failed.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum ApiError {
     /// The body cannot be read.
     #[error("the body cannot be read: {0}")]
     MalformedBody(String),
-    /// Parameters in the query are refused; every finding names its own.
+    /// Parameters of the query are refused; every finding names its parameter.
     #[error("the query is not valid: {}", details(.0))]
     InvalidQuery(Vec<Issue>),
     /// No such route.
-    #[error("there is nothing at {path}; GET /openapi.yaml lists what there is")]
+    #[error("there is no route {path}; GET /openapi.yaml lists the routes")]
     NotFound {
         /// Path asked for.
         path: String,
@@ -153,8 +153,8 @@ pub enum ApiError {
         /// Id asked for.
         id: String,
     },
-    /// The route exists, the method does not.
-    #[error("{method} is not supported at {path}; the Allow header lists what is")]
+    /// The route does not support the method.
+    #[error("{method} is not supported at {path}; the Allow header lists the supported methods")]
     MethodNotAllowed {
         /// Method used.
         method: String,
@@ -162,23 +162,23 @@ pub enum ApiError {
         path: String,
     },
     /// None of the representations is acceptable.
-    #[error("the Accept header excludes what there is: {offered}")]
+    #[error("the Accept header excludes all available media types: {offered}")]
     NotAcceptable {
         /// Media types that could be sent.
         offered: String,
     },
     /// The body is too large.
-    #[error("the body has more than {limit_bytes} bytes, the most that is read")]
+    #[error("the body has more than {limit_bytes} bytes, the limit")]
     BodyTooLarge {
         /// The limit, bytes.
         limit_bytes: usize,
     },
-    /// The body has a type that is not read here.
+    /// The route does not accept the body's media type.
     #[error("Content-Type is {found}; accepted: {accepted}")]
     UnsupportedMediaType {
-        /// What the request said, or `missing`.
+        /// Media type of the request, or `missing`.
         found: String,
-        /// What is read here.
+        /// Media types accepted here.
         accepted: &'static str,
     },
     /// The scene is refused.
@@ -187,14 +187,14 @@ pub enum ApiError {
     /// The mesh is refused.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The GPU queue has no answer.
+    /// The GPU queue returned an error.
     #[error(transparent)]
     Job(#[from] JobError),
     /// A study of accuracy is running; there is room for one.
     #[error("another study of accuracy is running; one at a time")]
     StudyRunning,
-    /// A scene cannot be compared with the truth.
-    #[error("no truth: {0}")]
+    /// The scene cannot be compared with the float64 reference.
+    #[error("no float64 reference: {0}")]
     NoTruth(String),
     /// The service does not take work now.
     #[error("not ready: {}", reasons.join("; "))]
@@ -211,7 +211,7 @@ pub enum ApiError {
 }
 
 impl ApiError {
-    /// Its kind, which decides type and status.
+    /// Its kind, which determines type and status.
     pub fn kind(&self) -> ProblemKind {
         match self {
             Self::MalformedBody(_) => ProblemKind::MalformedBody,
@@ -233,7 +233,7 @@ impl ApiError {
         }
     }
 
-    /// Seconds after which the same request may succeed, where that is known.
+    /// Seconds after which the same request may succeed, if known.
     pub fn retry_after_s(&self) -> Option<u64> {
         match self {
             Self::Job(JobError::QueueFull { retry_after_s, .. }) => Some(*retry_after_s),
@@ -249,17 +249,17 @@ impl ApiError {
         Self::from_body_status(rejection.status(), rejection.body_text(), limit_bytes)
     }
 
-    /// From a multipart body that broke off or broke a rule.
+    /// From a multipart body that is incomplete or malformed.
     pub(super) fn from_multipart(error: &MultipartError, limit_bytes: usize) -> Self {
         Self::from_body_status(error.status(), error.body_text(), limit_bytes)
     }
 
-    /// From a request that says multipart and is not.
+    /// From a request that claims to be multipart and is not.
     pub(super) fn from_multipart_rejection(rejection: &MultipartRejection) -> Self {
         Self::MalformedBody(rejection.body_text())
     }
 
-    /// From the catcher of panics.
+    /// From a caught panic.
     pub(super) fn from_panic(panic: &(dyn Any + Send)) -> Self {
         let message = panic
             .downcast_ref::<&str>()

@@ -24,7 +24,7 @@ impl FromRequest<AppState> for SceneBody {
         json_type(request.headers())?;
         let body = bytes(request, state).await?;
         let state = state.clone();
-        // A scene may hold as many bytes as the body limit lets through: reading it is work for another thread.
+        // A scene may be as large as the body limit, so it is read on a blocking thread.
         run_blocking(move || {
             let scene = Scene::from_json(&body)?;
             let resolved = methods::resolve(scene, state.limits(), |id| state.meshes().get(id))?;
@@ -34,7 +34,7 @@ impl FromRequest<AppState> for SceneBody {
     }
 }
 
-/// A body that says it is JSON, unread.
+/// A body with a JSON content type, not parsed yet.
 #[derive(Clone, Debug)]
 pub struct JsonBody(pub Bytes);
 
@@ -47,7 +47,7 @@ impl FromRequest<AppState> for JsonBody {
     }
 }
 
-/// Refuses bodies that do not say they are JSON.
+/// Refuses bodies without a JSON content type.
 fn json_type(headers: &HeaderMap) -> Result<(), ApiError> {
     let media_type = media_type(headers);
     if media_type
@@ -83,13 +83,13 @@ pub(super) fn unsupported(found: Option<String>, accepted: &'static str) -> ApiE
     }
 }
 
-/// Finds facts and warnings of a scene, for which rays are sent through its meshes: work for another thread than that of requests or
-/// of the GPU.
+/// Finds facts and warnings of a scene. This traces rays through its meshes, so it runs neither on a request thread nor on the
+/// GPU thread.
 pub(super) async fn prepare(resolved: ResolvedScene) -> Result<Prepared, ApiError> {
     run_blocking(move || Ok(Prepared::new(resolved).map_err(RenderError::from)?)).await
 }
 
-/// Runs work that would hold up other requests on a thread of its own; a panic there becomes an error.
+/// Runs work that would delay other requests on a blocking thread. A panic there becomes an error.
 pub(super) async fn run_blocking<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, ApiError> + Send + 'static,
 ) -> Result<T, ApiError> {

@@ -19,7 +19,7 @@ const REQUESTS: &str = "caustica_http_requests_total";
 const PROBLEMS: &str = "caustica_http_problems_total";
 const RENDER_SECONDS: &str = "caustica_render_seconds";
 
-/// The recorder of the process: installed once, since the `metrics` facade knows only one.
+/// The recorder of the process. It is installed once, since the `metrics` facade supports only one.
 static RECORDER: OnceLock<PrometheusHandle> = OnceLock::new();
 
 /// Gauges are set and read together, so that one scrape never shows the state of two.
@@ -38,7 +38,7 @@ impl Metrics {
         Self { _installed: () }
     }
 
-    /// Counts an answered request. `status` is 499 when the client had left.
+    /// Counts a request. `status` is 499 if the client left before the answer.
     pub(super) fn request(self, method: &str, route: &str, status: u16) {
         counter!(
             REQUESTS,
@@ -59,12 +59,12 @@ impl Metrics {
         histogram!(RENDER_SECONDS).record(took);
     }
 
-    /// Moves recorded samples into their buckets; to be called now and then when nobody scrapes.
+    /// Moves recorded samples into their buckets; call it periodically in case nothing scrapes `/metrics`.
     pub(super) fn upkeep(self) {
         handle().run_upkeep();
     }
 
-    /// Everything, in the Prometheus text format.
+    /// All metrics in the Prometheus text format.
     pub(super) fn render(self, state: &AppState) -> String {
         let _scrape = SCRAPE.lock().unwrap_or_else(PoisonError::into_inner);
         let status = state.queue().status();
@@ -112,22 +112,25 @@ fn handle() -> &'static PrometheusHandle {
 fn describe() {
     describe_counter!(
         REQUESTS,
-        "Requests by method, route and status; 499: the client left."
+        "Requests by method, route and status; 499: the client left before the answer."
     );
     describe_counter!(
         PROBLEMS,
-        "Problems told, by type: answers, and warm-ups of an upload that could not be done."
+        "Problems by type, of answers and of warm-ups of uploads that failed."
     );
     describe_histogram!(
         RENDER_SECONDS,
         Unit::Seconds,
-        "Renders, from arrival to the encoded file."
+        "Time of renders from arrival to the encoded file."
     );
-    describe_counter!("caustica_level_map_cache_hits_total", "Level maps found.");
+    describe_counter!(
+        "caustica_level_map_cache_hits_total",
+        "Level maps found in the cache."
+    );
     describe_counter!("caustica_level_map_cache_misses_total", "Level maps built.");
     describe_counter!(
         "caustica_level_map_cache_evictions_total",
-        "Level maps thrown out to make room."
+        "Level maps evicted to make room."
     );
     describe_counter!(
         "caustica_device_losses_total",
@@ -136,13 +139,13 @@ fn describe() {
     describe_gauge!(
         "caustica_level_map_cache_bytes",
         Unit::Bytes,
-        "Level maps held."
+        "Memory of cached level maps."
     );
-    describe_gauge!("caustica_level_map_cache_entries", "Level maps held.");
+    describe_gauge!("caustica_level_map_cache_entries", "Cached level maps.");
     describe_gauge!(
         "caustica_level_map_cache_budget_bytes",
         Unit::Bytes,
-        "Level maps that may be held."
+        "Maximum memory of cached level maps."
     );
     describe_gauge!("caustica_queue_depth", "Jobs that wait or run.");
     describe_gauge!("caustica_queue_capacity", "Jobs that may wait or run.");

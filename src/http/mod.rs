@@ -1,10 +1,10 @@
 //! The service: HTTP in front of the GPU queue.
 //!
-//! * [`router`]: every route and layer, on one screen;
+//! * [`router`]: every route and layer;
 //! * [`routes`]: one resource per file;
 //! * [`state`]: what the routes share;
-//! * [`error`]: every way to fail and its status, nowhere else; [`problem`]: how that is told and documented;
-//! * [`extract`]: request bodies; [`warm`]: the query of an upload; [`accept`]: which answer the client wants;
+//! * [`error`]: all errors with their status codes; [`problem`]: the problem documents they are answered with;
+//! * [`extract`]: request bodies; [`warm`]: the query of an upload; [`accept`]: content negotiation;
 //! * [`observe`]: arrival, deadline, request log and request metrics, around every route; [`metrics`]: the Prometheus side;
 //! * [`openapi`]: the contract, generated from the routes;
 //! * [`server`]: the listening process, from start to graceful shutdown.

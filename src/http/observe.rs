@@ -13,10 +13,10 @@ use super::metrics::Metrics;
 use super::state::AppState;
 use crate::gpu_queue::JobError;
 
-/// Header that carries the request's id, taken from the client or made up.
+/// Header with the request's id, which is the client's or a generated one.
 pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
-/// Status by which requests of clients that left are counted; never sent.
+/// Status under which requests of clients that left are counted; never sent.
 const CLIENT_GONE: u16 = 499;
 
 /// When a request arrived; deadlines count from here.
@@ -46,7 +46,7 @@ pub async fn observe(State(state): State<AppState>, mut request: Request, next: 
     );
     let deadline = state.queue().settings().deadline;
     async move {
-        // A body that trickles in, or an answer that takes too long to encode, meets the same deadline as the queue.
+        // The queue's deadline also applies to a body that arrives slowly and to an answer that takes long to encode.
         let answer = tokio::time::timeout(deadline, next.run(request)).await;
         let response = answer.unwrap_or_else(|_| {
             ApiError::from(JobError::DeadlinePassed {
@@ -61,7 +61,7 @@ pub async fn observe(State(state): State<AppState>, mut request: Request, next: 
     .await
 }
 
-/// The route's pattern, so that ids do not become labels.
+/// The route's pattern, so that ids in paths do not become labels.
 fn route(extensions: &Extensions) -> String {
     extensions
         .get::<MatchedPath>()
@@ -69,7 +69,7 @@ fn route(extensions: &Extensions) -> String {
         .to_owned()
 }
 
-/// Sees to it that each request is counted once, whether it is answered or abandoned.
+/// Counts each request once, whether it is answered or abandoned.
 struct Account {
     metrics: Metrics,
     method: String,
@@ -106,7 +106,7 @@ impl Drop for Account {
     }
 }
 
-/// The one place where a failed request is logged.
+/// Logs a failed request; no other place does.
 fn log_error(error: &ApiError, status: u16, took: Duration) {
     let ms = milliseconds(took);
     match error.kind().reason() {
@@ -116,7 +116,7 @@ fn log_error(error: &ApiError, status: u16, took: Duration) {
     }
 }
 
-/// To the microsecond.
+/// Milliseconds, rounded to the microsecond.
 fn milliseconds(duration: Duration) -> f64 {
     (duration.as_secs_f64() * 1e6).round() / 1e3
 }

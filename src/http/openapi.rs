@@ -9,19 +9,19 @@ use super::router;
 use crate::methods;
 use crate::scene::{MethodChoice, Scene};
 
-/// What the contract says besides the routes.
+/// The parts of the contract that are not routes.
 #[derive(OpenApi)]
 #[openapi(
     info(
         title = "Caustica",
-        description = "Renders water caustics: a scene in, a picture and what it cost out.\n\n\
+        description = "Renders water caustics: takes a scene, answers with a picture and its statistics.\n\n\
             Right-handed, Y up, metres, seconds, SI radiometry; angles in degrees; linear RGB. Unknown fields are errors. \
             Every failure is `application/problem+json` with a stable `type`; every answer carries `x-request-id`. \
             Any route may also answer 404, 405 and 503 (`urn:caustica:problem:deadline-passed`).",
         license(name = "MIT or Apache 2.0", identifier = "MIT OR Apache-2.0")
     ),
     tags(
-        (name = "render", description = "Scenes to pictures."),
+        (name = "render", description = "Rendering of scenes."),
         (name = "meshes", description = "Meshes that scenes refer to."),
         (name = "service", description = "Health, metrics, limits, contract.")
     ),
@@ -38,14 +38,14 @@ pub(super) fn document() -> utoipa::openapi::OpenApi {
 pub fn openapi() -> utoipa::openapi::OpenApi {
     let mut contract = router::api().into_openapi();
     if let Some(components) = &mut contract.components {
-        // The scene's own schema of it is neutral: which methods there are is known above the scene.
+        // The scene module's own schema of `Method` is generic, because that module does not know the methods.
         let name = MethodChoice::name().into_owned();
         components.schemas.insert(name, methods::schema().into());
     }
     contract
 }
 
-/// The contract as YAML, as it stands in `openapi.yaml`.
+/// The contract as YAML, as in `openapi.yaml`.
 pub fn yaml() -> &'static str {
     static YAML: OnceLock<String> = OnceLock::new();
     YAML.get_or_init(|| {

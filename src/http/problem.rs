@@ -1,4 +1,4 @@
-//! How a failure is told (RFC 9457) and documented.
+//! Problem documents (RFC 9457): how errors are answered, and how the contract documents them.
 
 use std::collections::BTreeMap;
 
@@ -15,38 +15,38 @@ use crate::scene::Issue;
 /// Media type of a problem.
 pub const MEDIA_TYPE: &str = "application/problem+json";
 
-/// Why a request has no good answer (RFC 9457).
+/// Why a request failed (RFC 9457).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Problem {
     /// Stable identifier of the kind, `urn:caustica:problem:…`.
     #[serde(rename = "type")]
     pub kind: String,
-    /// The kind in words; the same for every occurrence.
+    /// Title of the kind; the same for every occurrence.
     pub title: String,
     /// HTTP status.
     pub status: u16,
-    /// What happened this time, and what would be accepted.
+    /// What is wrong in this request, and what is accepted.
     pub detail: String,
     /// Who has to act.
     pub reason: Reason,
     /// Whether the same request may succeed later.
     pub retryable: bool,
-    /// What is wrong with the scene, by place; or with the query, whose findings name their parameter.
+    /// All findings about the scene, each with its place, or about the query, each with its parameter.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<Issue>,
-    /// What keeps the service from working, one sentence each.
+    /// Reasons why the service does not work, one sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub obstacles: Vec<String>,
-    /// Bytes that would be needed.
+    /// Bytes needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub needed_bytes: Option<u64>,
-    /// Bytes that are allowed.
+    /// Bytes allowed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub budget_bytes: Option<u64>,
 }
 
 impl Problem {
-    /// Tells an error.
+    /// The problem document of an error.
     pub fn of(error: &ApiError) -> Self {
         let kind = error.kind();
         let mut problem = Self {
@@ -85,15 +85,16 @@ impl Problem {
             _ => {}
         }
         if kind == ProblemKind::Internal {
-            // Defects are ours to read, in the log.
+            // Details of a defect are for the log only.
             problem.detail =
-                "a defect of the program; the log has the rest under the x-request-id".to_owned();
+                "a defect of the program; the log has the details under the x-request-id"
+                    .to_owned();
         }
         problem
     }
 }
 
-/// The findings in one line; the list has the rest.
+/// The first finding and the number of further ones, in one line.
 fn summary(issues: &[Issue]) -> String {
     match issues {
         [] => "the scene is not valid".to_owned(),
@@ -109,7 +110,7 @@ fn in_place(issue: &Issue) -> String {
     }
 }
 
-/// Declares sets of problems that a group of routes can answer, for their documentation.
+/// Declares the sets of problems that groups of routes can answer, for the contract.
 macro_rules! problem_sets {
     ($($(#[$doc:meta])* $name:ident = [$($kind:ident),+ $(,)?];)+) => {$(
         $(#[$doc])*
@@ -125,7 +126,7 @@ macro_rules! problem_sets {
 }
 
 problem_sets! {
-    /// Of routes that only read what is at hand.
+    /// Of routes that only read available data.
     CommonProblems = [Internal, DeadlinePassed];
     /// Of routes about one mesh.
     MeshProblems = [UnknownMesh, Internal, DeadlinePassed];

@@ -18,7 +18,7 @@ use super::openapi::document;
 use super::routes::{accuracy, docs, health, info, meshes, metrics, plan, render};
 use super::state::AppState;
 
-/// The documented routes: the one list from which both the router and the contract are made.
+/// The documented routes: the list from which both the router and the contract are made.
 pub(super) fn api() -> OpenApiRouter<AppState> {
     OpenApiRouter::with_openapi(document())
         .routes(routes!(docs::page))
@@ -40,13 +40,12 @@ pub fn app(state: AppState) -> Router {
     layered(routes.merge(docs::swagger()), state)
 }
 
-/// What surrounds the routes, whatever they are: ids, log, metrics, deadline, body limit, and problems for what no route
-/// answers.
+/// Adds the layers around all routes: ids, log, metrics, deadline, body limit, and problems for paths without a route.
 pub fn layered(routes: Router<AppState>, state: AppState) -> Router {
     routes
         .fallback(no_route)
         .method_not_allowed_fallback(no_method)
-        // From the inside out.
+        // The innermost layer comes first.
         .layer(CatchPanicLayer::custom(panicked))
         .layer(DefaultBodyLimit::max(state.limits().max_body_bytes))
         .layer(from_fn_with_state(state.clone(), observe))

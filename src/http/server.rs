@@ -15,13 +15,13 @@ use crate::gpu::GpuError;
 use crate::gpu_queue::{GpuQueue, GpuState, GpuStatus, QueueSettings, RenderBackend};
 use crate::render::Renderer;
 
-/// How much longer than a request's deadline connections are waited for on shutdown.
+/// On shutdown, how long to wait for connections beyond the deadline of requests.
 const CLOSING_MARGIN: Duration = Duration::from_secs(5);
 
-/// How often recorded metrics are condensed when nobody scrapes.
+/// How often recorded metrics are condensed, in case nothing scrapes `/metrics`.
 const UPKEEP_PERIOD: Duration = Duration::from_secs(5);
 
-/// Why the service does not run, or ended other than asked.
+/// Why the service did not start, or ended without a signal.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
     /// The address cannot be listened on.
@@ -42,11 +42,11 @@ pub enum ServeError {
 
 /// Runs the service until SIGTERM or SIGINT; a second signal ends it at once.
 ///
-/// Listens before the device is open, so that `/healthz` and `/readyz` answer meanwhile.
+/// It listens before the device is open, so that `/healthz` and `/readyz` answer meanwhile.
 ///
 /// # Errors
-/// When the address is taken, when no device can be opened at the start, or when the system refuses a resource. A device
-/// lost later is rebuilt and ends nothing.
+/// If the address is taken, if no device can be opened at the start, or if the system refuses a resource. A device lost
+/// later is rebuilt; the service goes on.
 pub async fn serve(
     render: RenderConfig,
     limits: Limits,
@@ -66,7 +66,7 @@ pub async fn serve(
     serve_with(listener, factory, render, limits, &serve).await
 }
 
-/// [`serve`] on a bound socket, with backends from `factory`; `serve.listen` is not looked at.
+/// [`serve`] on a bound socket, with backends from `factory`; `serve.listen` is ignored.
 ///
 /// # Errors
 /// As [`serve`].
@@ -102,16 +102,16 @@ where
         () = signalled => Ok(()),
         reason = failed_at_start(queue.watch()) => Err(ServeError::NoDevice(reason)),
     };
-    // Frees the device in order before the process ends.
+    // Free the device before the process ends.
     let _ = tokio::task::spawn_blocking(move || queue.close()).await;
     result
 }
 
-/// Serves on a bound socket until `stop` resolves: then `/readyz` turns red, `drain` passes, connections are refused, and
-/// what is in flight is finished.
+/// Serves on a bound socket until `stop` resolves. Then `/readyz` answers 503, `drain` passes, new connections are refused, and
+/// running requests are finished.
 ///
 /// # Errors
-/// When the socket fails.
+/// If the socket fails.
 pub async fn serve_on(
     listener: TcpListener,
     state: AppState,
@@ -125,7 +125,7 @@ pub async fn serve_on(
         draining.start_draining();
         tracing::info!(drain_s = drain.as_secs_f64(), "draining");
         tokio::time::sleep(drain).await;
-        tracing::info!("refusing connections, finishing what is in flight");
+        tracing::info!("refusing connections, finishing running requests");
         closed.cancel();
     };
     let patience = state.queue().settings().deadline + CLOSING_MARGIN;
@@ -152,7 +152,7 @@ pub async fn serve_on(
     }
 }
 
-/// Resolves with the reason if the first try to open a device fails; never otherwise.
+/// Resolves with the reason if the first attempt to open a device fails; otherwise never.
 async fn failed_at_start(mut status: watch::Receiver<GpuStatus>) -> String {
     let first = status
         .wait_for(|status| status.state != GpuState::Initializing)
@@ -198,7 +198,7 @@ impl Signals {
 
     #[cfg(not(unix))]
     async fn next(&mut self) {
-        // Without a handler there is nothing to wait for.
+        // Without a handler there is no signal to wait for.
         if tokio::signal::ctrl_c().await.is_err() {
             std::future::pending::<()>().await;
         }

@@ -12,7 +12,7 @@ use crate::assets::MeshStore;
 use crate::config::{Limits, RenderConfig};
 use crate::gpu_queue::GpuQueue;
 
-/// What the routes share; clones are handles on the same thing.
+/// What the routes share; clones refer to the same state.
 #[derive(Clone, Debug)]
 pub struct AppState {
     inner: Arc<Inner>,
@@ -45,7 +45,7 @@ impl AppState {
         }
     }
 
-    /// The way to the GPU.
+    /// The queue in front of the GPU.
     pub fn queue(&self) -> &GpuQueue {
         &self.inner.queue
     }
@@ -55,7 +55,7 @@ impl AppState {
         &self.inner.meshes
     }
 
-    /// What a request may ask for at most.
+    /// Limits of a request.
     pub fn limits(&self) -> &Limits {
         &self.inner.limits
     }
@@ -70,17 +70,17 @@ impl AppState {
         self.inner.metrics
     }
 
-    /// The right to make a study of accuracy: one at a time, since they take a core or all.
+    /// The permit to run a study of accuracy: one at a time, since a study uses one or all CPU cores.
     pub fn studies(&self) -> &Arc<Semaphore> {
         &self.inner.studies
     }
 
-    /// Folder that truths are kept in, if any.
+    /// Folder in which references are kept, if any.
     pub fn truth_cache(&self) -> Option<&PathBuf> {
         self.inner.render.truth_cache.as_ref()
     }
 
-    /// Turns `/readyz` red for good, so that nobody sends more work; requests are still served.
+    /// Makes `/readyz` answer 503 from now on, so that no more work is sent. Requests are still served.
     pub fn start_draining(&self) {
         self.inner.draining.store(true, Ordering::Release);
     }
@@ -94,7 +94,7 @@ impl AppState {
         obstacles
     }
 
-    /// Refuses work for a device that has failed its self-check: its pictures could not be trusted.
+    /// Refuses work if the device has failed its self-check, because its pictures are not trustworthy.
     ///
     /// # Errors
     /// [`ApiError::NotReady`].

@@ -1,4 +1,4 @@
-//! The query of an upload: under which suns the mesh will be seen first.
+//! The query of an upload: the suns for which level maps of the mesh are built.
 
 use axum::extract::{FromRequestParts, Query};
 use axum::http::request::Parts;
@@ -13,7 +13,7 @@ use crate::scene::{Issue, Quality, Water};
 /// The names of [`WarmParameters`].
 const NAMES: [&str; 4] = ["warm", "warm_texels", "warm_layers", "warm_ior"];
 
-/// What an upload may ask for besides: level maps, so that the first frame finds them.
+/// Level maps to build during an upload, so that the first frame finds them in the cache.
 #[derive(IntoParams)]
 #[into_params(parameter_in = Query)]
 #[expect(
@@ -21,22 +21,22 @@ const NAMES: [&str; 4] = ["warm", "warm_texels", "warm_layers", "warm_ior"];
     reason = "the shape of a query, for the contract; parameters are read one by one"
 )]
 pub struct WarmParameters {
-    /// `ELEVATION,AZIMUTH` of a sun, degrees, as in a scene: above 0 … 90, −10⁶ … 10⁶. Once for each sun. The level map is built that
-    /// an unrotated, uniformly scaled instance of the mesh needs under it.
+    /// `ELEVATION,AZIMUTH` of a sun, degrees, as in a scene: above 0 … 90, −10⁶ … 10⁶. Repeat it for each sun. The level map
+    /// built is the one that an unrotated, uniformly scaled instance of the mesh needs under this sun.
     #[param(style = Form, explode, example = json!(["60,30"]))]
     warm: Option<Vec<String>>,
-    /// `quality.level_map_texels` of the frames to come, a power of two, 16 … 2048. Default 256.
+    /// `quality.level_map_texels` of the later frames, a power of two, 16 … 2048. Default 256.
     #[param(minimum = 16, maximum = 2048)]
     warm_texels: Option<u32>,
-    /// `quality.layers` of the frames to come, 1 … 4. Default 1.
+    /// `quality.layers` of the later frames, 1 … 4. Default 1.
     #[param(minimum = 1, maximum = 4)]
     warm_layers: Option<u32>,
-    /// `water.ior` of the frames to come, 1 … 4. Default 1.333.
+    /// `water.ior` of the later frames, 1 … 4. Default 1.333.
     #[param(minimum = 1, maximum = 4)]
     warm_ior: Option<f64>,
 }
 
-/// What is to be warmed up, if anything.
+/// The requested warm-up, if any.
 #[derive(Clone, Debug)]
 pub struct WarmQuery(pub Option<WarmUp>);
 
@@ -50,7 +50,7 @@ impl FromRequestParts<AppState> for WarmQuery {
     }
 }
 
-/// What has been read so far, and what was wrong with it.
+/// The parameters read so far, and the findings.
 #[derive(Default)]
 struct Reader {
     suns: Vec<WarmSun>,
@@ -113,7 +113,7 @@ impl Reader {
         })))
     }
 
-    /// A value, or nothing and a finding.
+    /// The value, or none and a finding.
     fn note<T>(&mut self, name: &str, text: &str, value: Result<T, String>) -> Option<T> {
         let shown: String = text.chars().take(60).collect();
         value
@@ -123,11 +123,11 @@ impl Reader {
             .ok()
     }
 
-    /// Refuses a parameter that was there already.
+    /// Refuses a parameter that is given twice.
     fn once(&mut self, name: &str, was_there: bool) {
         if was_there {
             self.refuse(
-                format!("the parameter `{name}` is there twice"),
+                format!("the parameter `{name}` is given twice"),
                 "once".to_owned(),
             );
         }
@@ -138,7 +138,7 @@ impl Reader {
     }
 }
 
-/// A query that cannot be read at all.
+/// The error for a query that cannot be parsed.
 fn invalid(detail: String, accepted: &str) -> ApiError {
     ApiError::InvalidQuery(vec![Issue::invalid("", detail, accepted)])
 }
@@ -147,13 +147,13 @@ fn number(text: &str) -> Option<f64> {
     text.parse().ok()
 }
 
-/// An integer, or what would be accepted.
+/// An integer, or what is accepted.
 fn integer<R: Integer>(text: &str) -> Result<u32, String> {
     let value = text.parse().ok().filter(|&value| R::accepts(value));
     value.ok_or_else(R::accepted)
 }
 
-/// `ELEVATION,AZIMUTH`, or what would be accepted.
+/// `ELEVATION,AZIMUTH`, or what is accepted.
 fn sun(text: &str) -> Result<WarmSun, String> {
     let read = || {
         let (elevation, azimuth) = text.split_once(',')?;

@@ -1,4 +1,4 @@
-//! Reading image files back, for comparisons: exact numbers, no colour management.
+//! Reads image files for comparisons: exact numbers, no colour management.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -14,10 +14,10 @@ pub enum DecodeError {
     Unreadable {
         /// `PNG` or `EXR`.
         format: &'static str,
-        /// The library's words.
+        /// The library's message.
         reason: String,
     },
-    /// A PNG of another kind.
+    /// A PNG with another colour type or bit depth.
     #[error("PNG with {found} cannot be compared; RGB with 8 or 16 bits per channel is accepted")]
     PngKind {
         /// Colour type and bits found.
@@ -28,24 +28,24 @@ pub enum DecodeError {
 /// An EXR file as numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DecodedExr {
-    /// Pixels in a row.
+    /// Width, pixels.
     pub width: u32,
-    /// Rows.
+    /// Height, pixels.
     pub height: u32,
     /// Samples by full channel name, row by row from the top; half and integer samples become f32.
     pub channels: BTreeMap<String, Vec<f32>>,
     /// Whether a channel is stored as half, by full channel name.
     pub is_half: BTreeMap<String, bool>,
-    /// Custom attributes that are texts.
+    /// Custom attributes with text values.
     pub texts: BTreeMap<String, String>,
 }
 
 /// A PNG file as numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecodedPng {
-    /// Pixels in a row.
+    /// Width, pixels.
     pub width: u32,
-    /// Rows.
+    /// Height, pixels.
     pub height: u32,
     /// Bits per channel, 8 or 16.
     pub bits: u32,
@@ -107,7 +107,7 @@ pub fn decode_png(bytes: &[u8]) -> Result<DecodedPng, DecodeError> {
         .ok_or_else(|| unreadable("PNG", "too large for this machine".to_owned()))?;
     let mut data = vec![0; size];
     let frame = reader.next_frame(&mut data).map_err(failed)?;
-    // Texts may also stand behind the picture.
+    // Text chunks may also follow the picture.
     reader.finish().map_err(failed)?;
 
     let (bits, rgb) = match (frame.color_type, frame.bit_depth) {

@@ -1,4 +1,4 @@
-//! The way from a frame to the bytes of a file.
+//! Encodes a frame into the bytes of a file.
 
 use crate::frame::Frame;
 use crate::scene::{Encoding, ImageFormat};
@@ -14,7 +14,7 @@ pub struct Encoded {
     pub bytes: Vec<u8>,
     /// `image/png` or `image/x-exr`.
     pub media_type: &'static str,
-    /// What was lost on the way (clipped, clamped, left out); the file's metadata says the same.
+    /// Warnings about lost information (clipped, clamped, left out). The file's metadata has them too.
     pub warnings: Vec<Warning>,
 }
 
@@ -36,10 +36,10 @@ pub enum EncodeError {
         channel: usize,
         /// The value.
         value: f32,
-        /// What else would be accepted, as the end of the sentence; may be empty.
+        /// What else is accepted, as the end of the sentence; may be empty.
         exception: &'static str,
     },
-    /// A layer does not have the shape that belongs to it.
+    /// A layer has the wrong number of values or channels.
     #[error(
         "layer {layer} holds {values} values in {channels} channels; {width} x {height} pixels of {wanted_channels} channels are needed"
     )]
@@ -67,22 +67,22 @@ pub enum EncodeError {
         /// Number of layers.
         layers: usize,
     },
-    /// PNG needs a layer that can be shown.
+    /// The frame has no layer that PNG can show.
     #[error("PNG shows layer radiance (or irradiance of a map), the frame holds {present} only")]
     NothingToShow {
-        /// What the frame holds.
+        /// The layers of the frame.
         present: String,
     },
-    /// The exposure factor is useless.
+    /// The exposure factor is not usable.
     #[error("exposure factor {scale} cannot be applied; 0 ... 1e200 are accepted")]
     Exposure {
         /// The factor found in the frame's statistics.
         scale: f64,
     },
-    /// PNG has no such depth here.
+    /// This bit depth is not supported.
     #[error("PNG with {bits} bits per channel cannot be written; 8 and 16 are accepted")]
     PngBits {
-        /// Bits asked for.
+        /// Bits requested.
         bits: u32,
     },
     /// A text cannot be stored in the file.
@@ -91,12 +91,12 @@ pub enum EncodeError {
         /// Name of the entry.
         name: &'static str,
     },
-    /// The file format's library refused.
+    /// The encoder library failed.
     #[error("the {format} encoder failed: {reason}")]
     Format {
         /// `PNG` or `EXR`.
         format: &'static str,
-        /// Its own words.
+        /// Its message.
         reason: String,
     },
 }

@@ -25,7 +25,7 @@ use super::metadata::{Metadata, SCENE_HASH_KEY, STATS_KEY};
 /// Media type of EXR.
 pub const MEDIA_TYPE: &str = "image/x-exr";
 
-/// Linear light with Rec. 709 primaries, by the names of the Color Interop Forum.
+/// Linear light with Rec. 709 primaries, as the Color Interop Forum names it.
 pub const COLOR_INTEROP_ID: &str = "lin_rec709_scene";
 
 /// Rec. ITU-R BT.709 primaries and white point D65, CIE xy.
@@ -134,7 +134,7 @@ fn to_half(value: f32) -> f16 {
     f16::from_f32(value.clamp(f16::MIN.to_f32(), f16::MAX.to_f32()))
 }
 
-/// What a layer loses when it is written as half.
+/// Warnings about values that a layer loses when it is written as half.
 fn half_warnings(word: &str, layer: &Layer) -> Vec<Warning> {
     let largest = f16::MAX.to_f32();
     let clamped = layer.data.iter().filter(|v| v.abs() > largest).count();
@@ -164,13 +164,13 @@ fn half_warnings(word: &str, layer: &Layer) -> Vec<Warning> {
     warnings
 }
 
-/// One channel of a layer, read where it lies: large frames are not copied.
+/// One channel of a layer, read in place: large frames are not copied.
 struct Plane<'a> {
     layer: &'a Layer,
-    /// Which value of each pixel.
+    /// Index of the value within each pixel.
     index: usize,
     is_half: bool,
-    /// Pixels in a row.
+    /// Width, pixels.
     width: usize,
 }
 
@@ -199,7 +199,7 @@ impl SamplesWriter for &Plane<'_> {
         let first = line.location.position.y() * self.width + line.location.position.x();
         let value = |i: usize| {
             let value = self.layer.data[(first + i) * self.layer.channels + self.index];
-            // Only a depth can be infinite here, see `layers::check`.
+            // Only depths can be infinite here, see `layers::check`.
             if value == f32::INFINITY {
                 FAR_DEPTH_M
             } else {

@@ -1,16 +1,16 @@
 //! The order of attributes in an EXR header.
 //!
-//! The library keeps custom attributes in a hash map, so their order changes from run to run. OpenEXR's own writer sorts
-//! attributes by name; so does this file, afterwards. Nothing moves but the attributes themselves: the header keeps its
-//! length, and the offset table behind it stays right.
+//! The library keeps custom attributes in a hash map, so their order changes from run to run. This module sorts them by name
+//! after writing, as OpenEXR's own writer does. Only the attributes move: the header keeps its length, so the offset table after
+//! it stays valid.
 
-/// Magic number and version: what stands before the first attribute.
+/// Length of magic number and version, which precede the first attribute.
 const PREAMBLE_BYTES: usize = 8;
 
 /// Sorts the attributes of a single-part file by name.
 ///
 /// # Errors
-/// What is wrong with the header, if it is not one.
+/// What is wrong with the header.
 pub(super) fn sort_attributes(file: &mut [u8]) -> Result<(), &'static str> {
     let mut attributes: Vec<(usize, &[u8])> = Vec::new();
     let mut at = PREAMBLE_BYTES;

@@ -1,11 +1,11 @@
-//! What each layer is called in a file, what it holds, and whether it can be written.
+//! Names and contents of the layers in a file, and the check whether a layer can be written.
 
 use crate::frame::{Frame, Layer};
 use crate::scene::LayerName;
 
 use super::encode::EncodeError;
 
-/// Depth written for pixels that see nothing, m; a frame holds +∞ there.
+/// Depth written for pixels whose ray meets nothing, m; a frame holds +∞ there.
 pub const FAR_DEPTH_M: f32 = 1e10;
 
 /// How a layer appears in a file.
@@ -15,9 +15,9 @@ pub struct LayerFormat {
     pub word: &'static str,
     /// Name of its channels in EXR, one per value of a pixel, in the order of the frame.
     pub exr_channels: &'static [&'static str],
-    /// Whether `exr_pixel` chooses its number type; if not it is 32-bit float.
+    /// Whether `exr_pixel` selects its number type; if not, it is 32-bit float.
     pub follows_exr_pixel: bool,
-    /// What a value means, with its unit.
+    /// The meaning of its values, with unit.
     pub holds: &'static str,
 }
 

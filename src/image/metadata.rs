@@ -1,4 +1,4 @@
-//! What a file says about its own making: the part of the statistics that the same request gives again.
+//! Metadata of an image file: the reproducible part of the statistics.
 
 use serde_json::{Value, json};
 
@@ -10,12 +10,12 @@ pub const SCENE_HASH_KEY: &str = "caustica:scene_hash";
 /// Key of the statistics, compact JSON in ASCII with sorted keys, in PNG (iTXt) and EXR (string attribute).
 pub const STATS_KEY: &str = "caustica:stats";
 
-/// Passes whose name starts so fill the level-map cache: whether they run depends on the frames before.
+/// Prefix of the passes that fill the level-map cache: whether they run depends on earlier frames.
 pub const CACHED_PASS_PREFIX: &str = "level_map";
 
 /// Provenance of a picture.
 ///
-/// Times, numbers of runs (a picture may be cut into bands by time) and everything that depends on what is cached are left
+/// Times, numbers of runs (a picture may be split into bands depending on time) and everything that depends on the cache are left
 /// out, so that the same request gives the same bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metadata {
@@ -23,16 +23,16 @@ pub struct Metadata {
     pub scene_hash: String,
     /// Program version.
     pub version: String,
-    /// Where it ran.
+    /// The adapter it ran on.
     pub adapter: AdapterStats,
     /// Passes, energy, exposure, planned bytes, warnings: a JSON object.
     pub facts: Value,
 }
 
 impl Metadata {
-    /// Picks what is reproducible.
+    /// Selects the reproducible part.
     ///
-    /// `planned_peak_bytes` is there only for frames without level maps: with them, the plan depends on what was cached.
+    /// `planned_peak_bytes` is present only for frames without level maps: with them, the plan depends on what was cached.
     pub fn of(stats: &Stats) -> Self {
         let is_reproducible = |name: &str| !name.starts_with(CACHED_PASS_PREFIX);
         let passes: Vec<Value> = stats
@@ -71,7 +71,7 @@ impl Metadata {
         format!("Caustica {}", self.version)
     }
 
-    /// The value of [`STATS_KEY`]; `more` are warnings that writing the file added.
+    /// The value of [`STATS_KEY`]; `more` are the warnings from encoding the file.
     pub fn stats_json(&self, more: &[Warning]) -> String {
         let mut all = self.facts.clone();
         if !all.is_object() {
@@ -87,7 +87,7 @@ impl Metadata {
     }
 }
 
-/// Escapes everything outside ASCII, which in JSON occurs within strings only: EXR readers disagree about other encodings.
+/// Escapes everything outside ASCII (in JSON it occurs only within strings), because EXR readers disagree about other encodings.
 fn ascii(json: &str) -> String {
     let mut out = String::with_capacity(json.len());
     for character in json.chars() {

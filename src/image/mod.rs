@@ -1,10 +1,10 @@
-//! Image files: how the linear layers of a frame become PNG or EXR, and back.
+//! Image files: writes the linear layers of a frame as PNG or EXR, and reads them back.
 //!
-//! `encode` picks the format; `layers` says what each layer is called in a file and checks it; `tone` holds the display
-//! curves; `png` and `exr` write; `exr_header` makes an EXR header reproducible; `metadata` picks from the statistics what
-//! a file may carry; `decode` reads both formats for comparisons.
+//! `encode` selects the format; `layers` names the layers in a file and checks them; `tone` has the tone curves; `png` and `exr`
+//! write; `exr_header` makes an EXR header reproducible; `metadata` selects the statistics that a file contains; `decode` reads
+//! both formats for comparisons.
 //!
-//! The same frame gives the same bytes: no file holds a time of day, a duration or the state of a cache.
+//! The same frame gives the same bytes: no file contains a time of day, a duration or the state of a cache.
 
 pub mod decode;
 pub mod encode;

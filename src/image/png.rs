@@ -17,7 +17,7 @@ use super::tone::{code, display, srgb_from_linear};
 /// Media type of PNG.
 pub const MEDIA_TYPE: &str = "image/png";
 
-/// Largest exposure factor: with it even the largest f32 stays finite in f64.
+/// Largest exposure factor, with which even the largest f32 stays finite in f64.
 const MAX_SCALE: f64 = 1e200;
 
 /// Writes the shown layer of `frame`.
@@ -82,14 +82,14 @@ fn scale(frame: &Frame) -> Result<f64, EncodeError> {
     })
 }
 
-/// How many pixels lost something.
+/// Numbers of pixels that lost information.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lost {
     clipped: u64,
     negative: u64,
 }
 
-/// What turns linear light into codes.
+/// The conversion of linear light into codes.
 struct Screen {
     curve: ToneCurve,
     scale: f64,
@@ -198,7 +198,8 @@ fn file(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(depth);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-    // A noisy 960 x 540 picture takes 6 ms and 1.2 MB so, 126 ms and 0.6 MB with `Balanced`: somebody waits for the answer.
+    // `Fast` because a client waits for the answer: a noisy 960 x 540 picture takes 6 ms and 1.2 MB, with `Balanced` 126 ms and
+    // 0.6 MB.
     encoder.set_compression(Compression::Fast);
     let texts = [
         (SCENE_HASH_KEY, metadata.scene_hash.clone()),

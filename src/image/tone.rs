@@ -1,8 +1,8 @@
-//! Display curves in f64: from exposed, linear Rec. 709 light to sRGB codes.
+//! Tone curves in f64: from exposed, linear Rec. 709 light to sRGB codes.
 
 use crate::scene::ToneCurve;
 
-/// How far above 1 a value may be before it counts as clipped: the rounding of a white that was meant to be 1.
+/// How far above 1 a value may be before it counts as clipped: the rounding error of a white of 1.
 pub const CLIP_TOLERANCE: f64 = 1e-6;
 
 /// A pixel ready for the screen, still linear.
@@ -10,7 +10,7 @@ pub const CLIP_TOLERANCE: f64 = 1e-6;
 pub struct Display {
     /// Linear light, 0 … 1 per channel.
     pub rgb: [f64; 3],
-    /// Whether a channel lay above 1 and was cut ([`ToneCurve::Clip`] only).
+    /// Whether a channel was above 1 and was clipped ([`ToneCurve::Clip`] only).
     pub clipped: bool,
     /// Whether a channel was negative and was set to 0.
     pub negative: bool,
@@ -33,15 +33,15 @@ pub fn display(curve: ToneCurve, exposed: [f64; 3]) -> Display {
 
 /// Khronos PBR Neutral tone mapper.
 ///
-/// Source: Khronos Group, "Khronos PBR Neutral Tone Mapper" specification (2024), with F90 = 0.04, K_s = 0.8 − F90,
-/// K_d = 0.15. Light is moved down by the Fresnel offset, is otherwise unchanged up to K_s, and is compressed and bleached
-/// towards white above. Domain: finite, not negative; range 0 … 1.
+/// Source: Khronos Group, "Khronos PBR Neutral Tone Mapper" specification (2024), with F90 = 0.04, K_s = 0.8 − F90, K_d = 0.15.
+/// The Fresnel offset is subtracted; values up to K_s are otherwise unchanged; values above are compressed and desaturated
+/// towards white. Domain: finite, not negative; range 0 … 1.
 pub fn pbr_neutral(light: [f64; 3]) -> [f64; 3] {
     const F90: f64 = 0.04;
     const START_COMPRESSION: f64 = 0.8 - F90;
     const DESATURATION: f64 = 0.15;
 
-    // Undo the reflection that a dielectric adds at normal incidence; a parabola joins 0 smoothly.
+    // Subtract the reflection that a dielectric adds at normal incidence; a parabola joins 0 smoothly.
     let lowest = light.iter().copied().fold(f64::INFINITY, f64::min);
     let offset = if lowest < 2.0 * F90 {
         lowest - lowest * lowest / (4.0 * F90)
@@ -54,10 +54,10 @@ pub fn pbr_neutral(light: [f64; 3]) -> [f64; 3] {
     if peak < START_COMPRESSION {
         return moved;
     }
-    // Compress the brightest channel below 1, and the others with it, so that the hue stays.
+    // Compress the brightest channel below 1 and scale the others with it, which keeps the hue.
     let room = 1.0 - START_COMPRESSION;
     let new_peak = 1.0 - room * room / (peak + room - START_COMPRESSION);
-    // Bleach the more, the more was compressed.
+    // Desaturate more where more was compressed.
     let kept = 1.0 / (DESATURATION * (peak - new_peak) + 1.0);
     moved.map(|v| v * (new_peak / peak) * kept + new_peak * (1.0 - kept))
 }

@@ -1,6 +1,6 @@
 //! Why a mesh was refused.
 
-/// Why a mesh was refused: what, where, and what would be accepted. Lines and faces count from 1.
+/// Why a mesh was refused: what, where, and what is accepted. Lines and faces are counted from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
     /// Nothing to read.
@@ -8,7 +8,7 @@ pub enum MeshError {
         "the OBJ is empty; expected Wavefront OBJ text with `v x y z` and `f a b c` lines, in metres"
     )]
     Empty,
-    /// Bytes that are no text.
+    /// Bytes that are not UTF-8 text.
     #[error(
         "the {file} is not UTF-8 text: byte {offset} (line {line}) starts an invalid sequence; expected Wavefront \
          {file} text in UTF-8 or ASCII"
@@ -21,17 +21,17 @@ pub enum MeshError {
         /// Its line.
         line: usize,
     },
-    /// A line that cannot be understood.
+    /// A line that cannot be parsed.
     #[error("{file} line {line}: {message}")]
     Syntax {
         /// `OBJ` or `MTL`.
         file: &'static str,
         /// The line.
         line: usize,
-        /// What is wrong with it and what would be accepted.
+        /// What is wrong with it and what is accepted.
         message: String,
     },
-    /// Vertices, perhaps, but no surface.
+    /// No faces.
     #[error(
         "the OBJ has {vertices} vertices but no face with three or more corners; expected at least one line such \
          as `f 1 2 3`"
@@ -54,9 +54,9 @@ pub enum MeshError {
         what: &'static str,
         /// The index as written.
         index: i64,
-        /// How many the file has.
+        /// The number in the file.
         available: usize,
-        /// How many the file has before the line.
+        /// The number in the file before the line.
         available_before: usize,
     },
     /// NaN or infinity as a coordinate.
@@ -69,7 +69,7 @@ pub enum MeshError {
         /// The number as written.
         text: String,
     },
-    /// A coordinate beyond what the renderer can place.
+    /// A coordinate above the renderer's limit.
     #[error(
         "OBJ line {line}: coordinate `{text}` is too large; accepted are -{limit:e} … {limit:e} m"
     )]
@@ -81,12 +81,12 @@ pub enum MeshError {
         /// Largest magnitude, m.
         limit: f64,
     },
-    /// More triangles than the service takes.
+    /// More triangles than the limit.
     #[error(
-        "OBJ line {line}: the mesh has more than {limit} triangles, the most that is accepted; simplify or split it"
+        "OBJ line {line}: the mesh has more than {limit} triangles, the maximum; simplify or split it"
     )]
     TooManyTriangles {
-        /// The line of the face that was one too many.
+        /// The line of the face that exceeds the limit.
         line: usize,
         /// Most triangles of one mesh.
         limit: usize,
@@ -100,23 +100,23 @@ pub enum MeshError {
         /// Triangles read.
         triangles: usize,
     },
-    /// The store has no room.
+    /// The store is full.
     #[error(
         "the mesh takes {needed_bytes} bytes, but the mesh store holds {used_bytes} of at most {budget_bytes} bytes; \
          delete meshes or raise the limit"
     )]
     StoreFull {
-        /// What the mesh would take.
+        /// Bytes the mesh needs.
         needed_bytes: u64,
-        /// What is held.
+        /// Bytes held.
         used_bytes: u64,
-        /// What may be held.
+        /// Maximum number of bytes held.
         budget_bytes: u64,
     },
-    /// The OBJ reader refused what the checks before it let pass.
+    /// The OBJ library refused a file that passed our checks.
     #[error("the OBJ cannot be read: {reason}; expected Wavefront OBJ text")]
     Unreadable {
-        /// The reader's words.
+        /// The library's message.
         reason: String,
     },
 }

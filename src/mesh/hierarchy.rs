@@ -8,35 +8,35 @@ use glam::Vec3;
 
 use super::Triangle;
 
-/// Marks a leaf in [`HierarchyNode::entry`]; the other bits are then the triangle's index.
+/// Marks a leaf in [`HierarchyNode::entry`]; the other bits are then the index of the triangle.
 pub const LEAF: u32 = 0x8000_0000;
 
-/// Relative margin for a handful of f32 roundings of 2⁻²⁴ each.
+/// Relative margin for a few f32 roundings of 2⁻²⁴ each.
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
-/// A node in depth-first order. A ray that meets the box goes on at `entry`, any other at `exit`; a leaf (`entry & LEAF`) is
-/// tested against its triangle and always goes on at `exit`. `exit` = number of nodes ends the walk. Leaves have boxes as
-/// well, and it pays to test them.
+/// A node in depth-first order. If the ray hits the box, the traversal continues at `entry`, otherwise at `exit`. At a leaf
+/// (`entry & LEAF`) the triangle is tested, and the traversal continues at `exit`. It ends when `exit` is the number of nodes.
+/// Leaves also have boxes; testing them saves time.
 ///
-/// The first node is the root, of n triangles come 2 n − 1 nodes, `entry` of an inner node is the next node, and `exit` is
-/// always beyond the node itself, so that every walk ends.
+/// The first node is the root. n triangles give 2 n − 1 nodes. `entry` of an inner node is the next node. `exit` is always
+/// greater than the node's own index, so every traversal ends.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct HierarchyNode {
     /// Lower corner, relative to the mesh's origin, m.
     pub min_m: [f32; 3],
-    /// Next node when the box is met, or `LEAF` | triangle index.
+    /// Next node if the box is hit, or `LEAF` | triangle index.
     pub entry: u32,
     /// Upper corner, relative to the mesh's origin, m.
     pub max_m: [f32; 3],
-    /// Next node when the box is missed.
+    /// Next node if the box is missed.
     pub exit: u32,
 }
 
-/// Where a ray meets a triangle: at origin + t · direction = (1 − u − v) A + u B + v C.
+/// Where a ray hits a triangle: at origin + t · direction = (1 − u − v) A + u B + v C.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
-    /// Distance in lengths of the direction.
+    /// Distance in units of the direction's length.
     pub t: f32,
     /// Index of the triangle.
     pub triangle: u32,
@@ -46,13 +46,13 @@ pub struct TriangleHit {
     pub v: f32,
 }
 
-/// Builds the hierarchy; boxes hold their triangles with a margin of 10⁻⁶ of the mesh's size. Empty for no triangles.
+/// Builds the hierarchy. Boxes contain their triangles with a margin of 10⁻⁶ of the mesh's size. Empty if there are no triangles.
 pub fn build(triangles: &[Triangle]) -> Vec<HierarchyNode> {
     let largest_m = triangles
         .iter()
         .flat_map(|t| t.positions_m)
         .fold(0.0, |largest: f32, p| largest.max(p.abs().max_element()));
-    // The triangle test rounds corners by about 2⁻²⁴ of their distance: what it counts as hit may lie this far outside.
+    // The triangle test rounds corners by about 2⁻²⁴ of their distance, so a hit may lie this far outside the triangle.
     let margin_m = ROUNDING * largest_m;
     over(
         triangles
@@ -62,7 +62,7 @@ pub fn build(triangles: &[Triangle]) -> Vec<HierarchyNode> {
     )
 }
 
-/// Builds a hierarchy over boxes (lower and upper corner each); a leaf then holds the box's index. Boxes are taken as they are.
+/// Builds a hierarchy over boxes (lower and upper corner each). A leaf then holds the index of a box. No margin is added.
 pub fn build_over_boxes(boxes: &[[Vec3; 2]]) -> Vec<HierarchyNode> {
     over(
         boxes
@@ -77,7 +77,7 @@ fn over(mut shapes: Vec<Shape>) -> Vec<HierarchyNode> {
     let Some(root) = bounds(&shapes) else {
         return Vec::new();
     };
-    // The tree is in depth-first order already; parents hold the boxes of their children, and know where those end.
+    // The tree is already in depth-first order. A parent node stores the boxes of its children and where they end.
     let end = tree.nodes.len() as u32;
     let mut nodes = vec![node(&root, 0, end); tree.nodes.len()];
     for (index, tree_node) in tree.nodes.iter().enumerate() {
@@ -99,10 +99,10 @@ fn over(mut shapes: Vec<Shape>) -> Vec<HierarchyNode> {
     nodes
 }
 
-/// The nearest triangle that a ray meets at `t_min` ≤ t ≤ `t_max`, from either side; of several at the same t, the one
-/// walked to first. Single precision, step by step what a shader does.
+/// The nearest triangle that a ray hits at `t_min` ≤ t ≤ `t_max`, from either side; of several at the same t, the first in
+/// traversal order. Computes in single precision with the same steps as the shader.
 ///
-/// `direction` is of any length from 10⁻¹⁰ to 10¹⁰; t counts in that length.
+/// `direction` has any length from 10⁻¹⁰ to 10¹⁰; t is in units of that length.
 pub fn first_hit(
     nodes: &[HierarchyNode],
     triangles: &[Triangle],
@@ -137,27 +137,28 @@ pub fn first_hit(
     best
 }
 
-/// A ray with what its tests share.
+/// A ray, with the values that its tests share.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
     origin: Vec3,
     /// direction / |direction|²: t of a point p is (p − origin) · along.
     along: Vec3,
-    /// Two unit vectors that span the plane across the ray.
+    /// Two unit vectors that span the plane perpendicular to the ray.
     across: [Vec3; 2],
     /// 1 / direction, finite.
     inverse: Vec3,
-    /// What rounding takes from corners far from the origin, given back to the boxes.
+    /// Margin added to boxes against rounding if the ray's origin is far from the mesh's.
     margin: f32,
 }
 
 impl Ray {
-    /// A ray; `direction` is of any length from 10⁻¹⁰ to 10¹⁰.
+    /// A ray; `direction` has any length from 10⁻¹⁰ to 10¹⁰.
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         let length = direction.length();
         let unit = direction / length;
         let (first, second) = unit.any_orthonormal_pair();
-        // A component that is zero or nearly so leaves its slab to the sign of the distance: no infinities.
+        // Replace a component that is zero or nearly zero by a tiny one, to avoid infinities: the sign of the distance then
+        // decides the slab.
         let least = 1e-18 * length;
         let finite = |d: f32| {
             1.0 / if d.abs() < least {
@@ -179,7 +180,8 @@ impl Ray {
         }
     }
 
-    /// Whether the ray passes the node's box between `t_min` and `t_max`; never misses what the box holds.
+    /// Whether the ray passes the node's box between `t_min` and `t_max`. Conservative: never false if the ray hits something
+    /// inside the box.
     pub fn meets_box(&self, node: &HierarchyNode, t_min: f32, t_max: f32) -> bool {
         let to_min = (Vec3::from_array(node.min_m) - (self.origin + self.margin)) * self.inverse;
         let to_max = (Vec3::from_array(node.max_m) - (self.origin - self.margin)) * self.inverse;
@@ -188,16 +190,16 @@ impl Ray {
         near.max(t_min) <= (far + ROUNDING * far.abs()).min(t_max)
     }
 
-    /// Where the ray's line meets a triangle, from either side: (t, u, v).
+    /// Where the ray's line hits a triangle, from either side: (t, u, v).
     ///
-    /// Corners are projected onto the plane across the ray (after Woop, Benthin and Wald, "Watertight Ray/Triangle
-    /// Intersection", JCGT 2(1), 2013): a corner's projection is the same for all triangles that share it, so a ray
-    /// cannot slip between neighbours, however thin, and no threshold is needed. A triangle of less than 10⁻⁶ of its
-    /// distance is all rounding; whoever asks has to ask [`Ray::meets_box`] for its leaf first.
+    /// Corners are projected onto the plane perpendicular to the ray (after Woop, Benthin and Wald, "Watertight Ray/Triangle
+    /// Intersection", JCGT 2(1), 2013). The projection of a corner is the same for all triangles that share it, so a ray cannot
+    /// slip between neighbours, however thin, and no threshold is needed. For a triangle smaller than 10⁻⁶ of its distance the
+    /// result is only rounding error; call [`Ray::meets_box`] for its leaf first.
     pub fn hit_triangle(&self, corners: &[Vec3; 3]) -> Option<(f32, f32, f32)> {
         let relative = corners.map(|p| p - self.origin);
         let [a, b, c] = relative.map(|p| (p.dot(self.across[0]), p.dot(self.across[1])));
-        // Twice the areas that the ray cuts off: each is the weight of the opposite corner.
+        // Twice the areas of the three parts around the ray: each is the weight of the opposite corner.
         let weight_a = c.0 * b.1 - c.1 * b.0;
         let weight_b = a.0 * c.1 - a.1 * c.0;
         let weight_c = b.0 * a.1 - b.1 * a.0;
@@ -214,7 +216,7 @@ impl Ray {
     }
 }
 
-/// A triangle's box, as the builder wants it.
+/// A box, in the builder's form.
 #[derive(Clone, Copy, Debug)]
 struct Shape {
     aabb: Aabb<f32, 3>,

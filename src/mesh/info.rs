@@ -1,4 +1,4 @@
-//! What a mesh is, for lists and answers.
+//! The description of a mesh, for lists and answers.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -11,15 +11,15 @@ use crate::stats::Warning;
 pub struct MeshInfo {
     /// `blake3:<hex>` of the uploaded bytes.
     pub id: String,
-    /// Triangles kept.
+    /// Number of triangles kept.
     pub triangles: usize,
-    /// Bounds of those, in the file's coordinates.
+    /// Bounds of the kept triangles, in the file's coordinates.
     pub bounds_m: MeshBounds,
-    /// Materials that triangles use.
+    /// Number of materials that triangles use.
     pub materials: Vec<Material>,
-    /// Host memory the mesh takes, bytes.
+    /// Host memory of the mesh, bytes.
     pub bytes: u64,
-    /// What was mended or left out while reading.
+    /// What was repaired or left out while reading.
     pub warnings: Vec<Warning>,
 }
 
@@ -33,7 +33,7 @@ pub struct MeshBounds {
 }
 
 impl Mesh {
-    /// What the mesh is.
+    /// The description of the mesh.
     pub fn info(&self) -> MeshInfo {
         MeshInfo {
             id: self.id.clone(),
@@ -48,7 +48,7 @@ impl Mesh {
         }
     }
 
-    /// Host memory the mesh takes, bytes.
+    /// Host memory of the mesh, bytes.
     pub fn bytes(&self) -> u64 {
         let texts = self.materials.iter().map(|m| m.name.len()).sum::<usize>()
             + self

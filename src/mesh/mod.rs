@@ -1,5 +1,5 @@
-//! Meshes: OBJ and MTL in (`obj`, with `scan`, `mtl` and `text` that check the texts first), what was mended (`repair`), why one was
-//! refused (`error`), a ray hierarchy over the triangles (`hierarchy`), and a description of each mesh (`info`).
+//! Meshes: reading OBJ and MTL (`obj`, with `scan`, `mtl` and `text`, which check the texts first), repairs (`repair`), errors
+//! (`error`), a ray hierarchy over the triangles (`hierarchy`), and a description of each mesh (`info`).
 
 mod error;
 pub mod hierarchy;
@@ -25,7 +25,7 @@ pub use scan::MAX_COORDINATE_M;
 pub struct Mesh {
     /// `blake3:<hex>` of the uploaded bytes.
     pub id: String,
-    /// Middle of the bounds in file coordinates, m; everything below is relative to it, so that detail survives f32.
+    /// Middle of the bounds in file coordinates, m. All following coordinates are relative to it, so that f32 keeps the detail.
     pub origin_m: DVec3,
     /// Lower corner of the bounds, relative to `origin_m`, m.
     pub min_m: Vec3,
@@ -37,16 +37,16 @@ pub struct Mesh {
     pub materials: Vec<Material>,
     /// Skip-pointer hierarchy over `triangles`, in traversal order.
     pub hierarchy: Vec<HierarchyNode>,
-    /// What was mended or left out while reading, one sentence each.
+    /// What was repaired or left out while reading, one sentence each.
     pub warnings: Vec<crate::stats::Warning>,
 }
 
 /// One triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
-    /// Corners relative to the mesh's origin, m, counter-clockwise seen from outside where the file is.
+    /// Corners relative to the mesh's origin, m. Counter-clockwise as seen from outside, if they are so in the file.
     pub positions_m: [Vec3; 3],
-    /// Unit shading normals at the corners; the file's where it has them, else the face normal.
+    /// Unit shading normals at the corners: the file's if it has them, else the face normal.
     pub normals: [Vec3; 3],
     /// Index into the mesh's materials.
     pub material: u32,

@@ -7,17 +7,17 @@ use super::text::{name, shorten, words};
 use super::{Material, MeshError};
 use crate::stats::Warning;
 
-/// Diffuse reflectance where the files say nothing.
+/// Diffuse reflectance if the files have none.
 pub const DEFAULT_ALBEDO: f32 = 0.8;
 /// Code of the warning that a reflectance was out of range.
 pub(crate) const CLAMPED: &str = "mesh_material_clamped";
 
 const MTL: &str = "MTL";
 
-/// What the first reading of an MTL found.
+/// The result of checking an MTL.
 #[derive(Debug, Default)]
 pub(super) struct MtlScan {
-    /// The MTL again: `newmtl` and `Kd` with three values each.
+    /// The rewritten MTL: `newmtl` and `Kd` with three values each.
     pub(super) text: String,
     /// Names after `newmtl`.
     pub(super) names: BTreeSet<String>,
@@ -25,7 +25,7 @@ pub(super) struct MtlScan {
     pub(super) warnings: Vec<Warning>,
 }
 
-/// Checks an MTL text line by line and keeps what is used. Needed because the reader panics on a `Kd` with fewer than
+/// Checks an MTL text line by line and keeps what is used. This is needed because the library panics on a `Kd` with fewer than
 /// three values.
 pub(super) fn scan(text: &str) -> Result<MtlScan, MeshError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -45,7 +45,7 @@ pub(super) fn scan(text: &str) -> Result<MtlScan, MeshError> {
             "Kd" if scan.names.is_empty() => {
                 return Err(syntax(
                     line,
-                    "`Kd` stands before any material; expected `newmtl name` first".to_owned(),
+                    "`Kd` comes before any material; expected `newmtl name` first".to_owned(),
                 ));
             }
             "Kd" => {
@@ -117,7 +117,7 @@ pub(super) fn default_material() -> Material {
     }
 }
 
-/// A material as the renderer takes it: reflectances in 0 … 1, with a warning where they were not.
+/// A material for the renderer: reflectances clamped to 0 … 1, with a warning if they were outside.
 pub(super) fn material(
     name: &str,
     diffuse: Option<[f64; 3]>,

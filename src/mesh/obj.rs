@@ -1,6 +1,6 @@
-//! OBJ and MTL in: bytes to [`Mesh`].
+//! Reads OBJ and MTL bytes into a [`Mesh`].
 //!
-//! The bytes given are all that is ever read: a `mtllib` line names a file for people, its path is never opened.
+//! Only the given bytes are read: the path in a `mtllib` line is never opened.
 
 use std::collections::BTreeMap;
 
@@ -12,11 +12,11 @@ use super::{Material, Mesh, MeshError, Triangle, hierarchy, mtl, scan};
 use crate::config::Limits;
 use crate::stats::Warning;
 
-/// Triangle indices share a word with [`hierarchy::LEAF`]; this leaves room for two nodes a triangle as well.
+/// Largest number of triangles: their indices share a word with [`hierarchy::LEAF`], and there are two nodes for each triangle.
 const MAX_TRIANGLES: usize = 1 << 30;
 
-/// The id of a mesh: `blake3:` and the hash of the OBJ's bytes, as `b3sum` prints it; with an MTL, a hash in a domain of
-/// its own over both, each after its length, so that no two uploads share an id.
+/// The id of a mesh: `blake3:` and the hash of the OBJ's bytes, as `b3sum` prints it. With an MTL, the hash has a derivation key
+/// of its own and covers both texts, each after its length, so that no two uploads share an id.
 pub fn id(obj: &[u8], mtl: Option<&[u8]>) -> String {
     let hash = match mtl {
         None => blake3::hash(obj),
@@ -32,13 +32,14 @@ pub fn id(obj: &[u8], mtl: Option<&[u8]>) -> String {
     format!("blake3:{}", hash.to_hex())
 }
 
-/// Reads a mesh, in metres. Polygons become fans of triangles; degenerate and doubled triangles are left out and said in
-/// `warnings`; holes and edges with more than two faces are kept and said.
+/// Reads a mesh, in metres. Polygons become fans of triangles. Degenerate and duplicate triangles are left out; holes and edges
+/// with more than two faces are kept. `warnings` states both.
 ///
 /// Faces without material, or whose material has no `Kd`, get a reflectance of 0.8.
 ///
 /// # Errors
-/// See [`MeshError`]; more triangles than `limits.max_triangles` are refused before the file is read to its end.
+/// See [`MeshError`]. A mesh with more than `limits.max_triangles` triangles is refused before the rest of the file is
+/// read.
 pub fn read(obj: &[u8], mtl: Option<&[u8]>, limits: &Limits) -> Result<Mesh, MeshError> {
     if obj.is_empty() {
         return Err(MeshError::Empty);
@@ -53,7 +54,7 @@ pub fn read(obj: &[u8], mtl: Option<&[u8]>, limits: &Limits) -> Result<Mesh, Mes
 
     let mtl_text = mtl_scan.as_ref().map(|scan| scan.text.as_str());
     let (mut models, file_materials) = load(&scan.text, mtl_text)?;
-    // The reader ends with a model without faces when the last line is a `usemtl`.
+    // The library adds a last model without faces if the last line is a `usemtl`.
     models.retain(|model| !model.mesh.indices.is_empty());
     let (materials, material_of) = used_materials(&models, &file_materials, &mut warnings);
     let raw: Vec<RawTriangle> = models
@@ -86,7 +87,7 @@ fn utf8<'a>(file: &'static str, bytes: &'a [u8]) -> Result<&'a str, MeshError> {
     })
 }
 
-/// Hands the checked texts to the OBJ reader.
+/// Passes the checked texts to the OBJ library.
 fn load(
     obj: &str,
     mtl: Option<&str>,
@@ -98,7 +99,7 @@ fn load(
     let unreadable = |error: tobj::LoadError| MeshError::Unreadable {
         reason: error.to_string(),
     };
-    // Materials are known from the first line on, whatever the file called its library and wherever it named it.
+    // Name a library in the first line, so that the materials are known regardless of where and how the file names it.
     let mut text = std::io::Read::chain("mtllib given\n".as_bytes(), obj.as_bytes());
     let (models, materials) = tobj::load_obj_buf(&mut text, &options, |_| {
         tobj::load_mtl_buf(&mut mtl.unwrap_or_default().as_bytes())
@@ -107,8 +108,8 @@ fn load(
     Ok((models, materials.map_err(unreadable)?))
 }
 
-/// The materials that faces use, in the order of the MTL, with the default one last where it is needed; and the place of
-/// each in that list.
+/// The materials that faces use, in the order of the MTL, followed by the default one if it is needed; and the index of each in
+/// that list.
 fn used_materials(
     models: &[tobj::Model],
     file_materials: &[tobj::Material],
@@ -133,7 +134,7 @@ fn used_materials(
     (materials, place_of)
 }
 
-/// What the names of materials in the two files say about each other.
+/// Warnings about material names that are in only one of the two files.
 fn material_warnings(scan: &Scan, mtl: Option<&mtl::MtlScan>, warnings: &mut Vec<Warning>) {
     let Some(mtl) = mtl else {
         if let (Some(library), false) = (&scan.library, scan.used_materials.is_empty()) {
@@ -180,7 +181,7 @@ fn missing<'a>(names: impl Iterator<Item = &'a String>, why: &str) -> Warning {
     )
 }
 
-/// The triangles of one model of the reader, in file coordinates.
+/// The triangles of one model of the library, in file coordinates.
 fn triangles(mesh: &tobj::Mesh, material: u32) -> impl Iterator<Item = RawTriangle> + '_ {
     let pick = |values: &[_], index: u32| vector(&values[3 * index as usize..][..3]);
     mesh.indices
@@ -193,7 +194,7 @@ fn triangles(mesh: &tobj::Mesh, material: u32) -> impl Iterator<Item = RawTriang
         })
 }
 
-/// Three of the reader's numbers, whichever width it was built with.
+/// Three of the library's numbers, whether it was built with f32 or f64.
 fn vector<T: Copy + Into<f64>>(values: &[T]) -> DVec3 {
     DVec3::new(values[0].into(), values[1].into(), values[2].into())
 }

@@ -1,5 +1,5 @@
-//! From triangles as read to triangles as rendered: moved to the middle of their bounds, without those that have no area
-//! or are there twice; and a report of what was left out or is doubtful.
+//! Repairs the triangles that were read: moves them to the middle of their bounds, removes those without area and duplicates, and
+//! reports what was left out or is doubtful.
 
 use std::collections::{HashMap, HashSet};
 
@@ -8,11 +8,11 @@ use glam::{DVec3, Vec3};
 use super::{MeshError, Triangle};
 use crate::stats::Warning;
 
-/// A triangle whose height is this fraction of its longest edge, or less, has its corners on a line: rounding in the
+/// A triangle whose height is at most this fraction of its longest edge counts as degenerate (corners on a line): rounding in the
 /// cross product alone reaches 10⁻¹⁶.
 const FLAT: f64 = 1e-12;
 
-/// Codes of the warnings that triangles were left out.
+/// Codes of the warnings about triangles that were left out.
 pub(crate) const LEFT_OUT: [&str; 2] = [DEGENERATE, DUPLICATE];
 const DEGENERATE: &str = "mesh_degenerate_triangles";
 const DUPLICATE: &str = "mesh_duplicate_triangles";
@@ -28,7 +28,7 @@ pub(super) struct RawTriangle {
     pub(super) material: u32,
 }
 
-/// What came out.
+/// The repaired mesh.
 #[derive(Debug)]
 pub(super) struct Repaired {
     /// Middle of the bounds in file coordinates, m.
@@ -44,8 +44,8 @@ pub(super) fn repair(raw: &[RawTriangle]) -> Result<Repaired, MeshError> {
     let no_area = || MeshError::NoArea {
         triangles: raw.len(),
     };
-    // A sliver that is going to be dropped must not move the origin, so flat triangles go first in f64, and again once
-    // the corners and then the edges are rounded.
+    // Flat triangles are dropped in f64 first, so that they do not move the origin, then again after the corners and after the
+    // edges are rounded.
     let solid = || raw.iter().filter(|t| face_normal(t.positions_m).is_some());
     let (min, max) = solid()
         .flat_map(|t| t.positions_m)
@@ -70,7 +70,8 @@ pub(super) fn repair(raw: &[RawTriangle]) -> Result<Repaired, MeshError> {
         let Some(normal) = face_normal(corners.map(|p| p.as_dvec3())) else {
             continue;
         };
-        // The renderer takes edges from the first corner in f32: needles whose edges round alike are met by no ray.
+        // The renderer computes edges from the first corner in f32. A needle whose rounded edges have no area between them is hit
+        // by no ray.
         let [a, b, c] = corners;
         if face_normal([DVec3::ZERO, (b - a).as_dvec3(), (c - a).as_dvec3()]).is_none() {
             continue;
@@ -106,8 +107,8 @@ pub(super) fn repair(raw: &[RawTriangle]) -> Result<Repaired, MeshError> {
     })
 }
 
-/// Unit normal by the right-hand rule; `None` when the corners lie on a line, or so close together that an f32 cross
-/// product of the edges would underflow.
+/// Unit normal by the right-hand rule; `None` if the corners lie on a line, or so close together that an f32 cross product of the
+/// edges would underflow.
 fn face_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     let (u, v, w) = (b - a, c - b, a - c);
     let longest_squared = u
@@ -121,7 +122,7 @@ fn face_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     has_area.then(|| cross / doubled_area)
 }
 
-/// The same cycle of vertices, the smallest first: turning a triangle does not make it another one, mirroring it does.
+/// The same cycle of vertices, starting with the smallest. A rotated triangle is the same triangle, a mirrored one is not.
 fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     if a < b && a < c {
         [a, b, c]
@@ -132,7 +133,7 @@ fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-/// Gives corners at the same place the same number.
+/// Gives corners at the same position the same number.
 #[derive(Debug, Default)]
 struct Welder {
     vertices: HashMap<[u32; 3], u32>,
@@ -148,14 +149,14 @@ impl Welder {
     }
 }
 
-/// How the triangles meet.
+/// How triangles share edges.
 #[derive(Debug, Default)]
 struct EdgeReport {
     /// Edges of one triangle only.
     open: usize,
     /// Edges of more than two triangles.
     crowded: usize,
-    /// Edges of two triangles that run along them in the same direction.
+    /// Edges of two triangles that traverse them in the same direction.
     turned: usize,
 }
 

@@ -1,8 +1,8 @@
-//! The first reading of an OBJ: refuses, with line numbers, what cannot be used, and rewrites the rest so that the OBJ
-//! reader has nothing left to guess — absolute indices, every corner with a normal, no names but those of materials.
+//! Checks an OBJ before the OBJ library reads it: refuses, with line numbers, what cannot be used, and rewrites the rest without
+//! ambiguities: absolute indices, a normal for every corner, no names but those of materials.
 //!
-//! Without it the reader would take the line `l 1 2 3` for a triangle, give a corner without normal that of the corner
-//! before it, refuse vertex colours on some vertices only, and answer without saying where.
+//! Without this, the library would read the line `l 1 2 3` as a triangle, give a corner without a normal that of the previous
+//! corner, refuse vertex colours that only some vertices have, and report errors without a line.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -13,13 +13,13 @@ use super::MeshError;
 use super::text::{OBJ, corner_syntax, name, number, shorten, syntax, words};
 use crate::stats::Warning;
 
-/// Largest coordinate magnitude, m; beyond it f32 steps are wider than 50 m even around the mesh's own middle.
+/// Largest coordinate magnitude, m. Beyond it, f32 steps are wider than 50 m even relative to the mesh's own middle.
 pub const MAX_COORDINATE_M: f64 = 1e9;
 
-/// What the first reading found.
+/// The result of the check.
 #[derive(Debug, Default)]
 pub(super) struct Scan {
-    /// The OBJ again: `v`, `vn` (the first is zero and stands for "none"), `usemtl`, and `f` lines with `position//normal`.
+    /// The rewritten OBJ: `v`, `vn` (the first is zero and means "none"), `usemtl`, and `f` lines with `position//normal`.
     pub(super) text: String,
     /// Names after `usemtl`.
     pub(super) used_materials: BTreeSet<String>,
@@ -29,7 +29,7 @@ pub(super) struct Scan {
     pub(super) warnings: Vec<Warning>,
 }
 
-/// Reads an OBJ text; more than `max_triangles` triangles are refused at the line where they are exceeded.
+/// Checks an OBJ text. More than `max_triangles` triangles are refused at the line that exceeds the limit.
 pub(super) fn scan(text: &str, max_triangles: usize) -> Result<Scan, MeshError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if text.trim().is_empty() {
@@ -60,7 +60,7 @@ pub(super) fn scan(text: &str, max_triangles: usize) -> Result<Scan, MeshError> 
     scanner.finish()
 }
 
-/// An index that has to exist by the end of the file.
+/// An index that has to be defined by the end of the file.
 #[derive(Clone, Copy, Debug, Default)]
 struct Reference {
     index: usize,
@@ -146,7 +146,7 @@ impl Scanner {
 
     fn position(&mut self, line: usize, rest: &str) -> Result<(), MeshError> {
         let words: Vec<&str> = words(rest).collect();
-        // Three coordinates; a weight that divides them; or three values of colour, which are not used.
+        // Three coordinates, alone, with a weight that divides them, or with three colour values, which are not used.
         if !matches!(words.len(), 3 | 4 | 6) {
             return Err(syntax(
                 line,
@@ -273,7 +273,7 @@ impl Scanner {
         Ok((position, normal + 1))
     }
 
-    /// Turns an index as written into an absolute one; an index beyond what was read so far is checked at the end.
+    /// Turns an index as written into an absolute one. An index beyond those read so far is checked at the end.
     fn reference(
         &mut self,
         line: usize,
@@ -314,7 +314,7 @@ impl Scanner {
         Ok(absolute)
     }
 
-    /// Whether the triangles of the fan around the first corner face different ways: a fan then covers the wrong area.
+    /// Whether the triangles of the fan around the first corner face different directions. The fan then covers the wrong area.
     fn is_concave(&self) -> bool {
         let at = |i: usize| self.positions.get(self.corners[i].0 - 1).copied();
         let mut first: Option<DVec3> = None;
@@ -390,7 +390,7 @@ impl Scanner {
             (
                 self.bad_normals,
                 "mesh_bad_normals",
-                "normals are zero or not finite; face normals stand in for them.",
+                "normals are zero or not finite; face normals are used instead.",
             ),
             (self.ignored, "mesh_ignored_lines", &ignored),
         ]

@@ -2,10 +2,10 @@
 
 use super::MeshError;
 
-/// What the file is called in messages.
+/// The name of the file in messages.
 pub(super) const OBJ: &str = "OBJ";
 
-/// Longest name of a material or library, bytes; the reader copies names, once per change of material.
+/// Longest name of a material or library, bytes. It is limited because the library copies a name at every change of material.
 const MAX_NAME_BYTES: usize = 255;
 
 /// Words of a line up to a trailing comment.
@@ -14,7 +14,7 @@ pub(super) fn words(rest: &str) -> impl Iterator<Item = &str> {
         .take_while(|word| !word.starts_with('#'))
 }
 
-/// The name after a keyword: the rest of the line, which may hold spaces.
+/// The name after a keyword: the rest of the line, which may contain spaces.
 pub(super) fn name<'a>(
     file: &'static str,
     line: usize,
@@ -48,7 +48,7 @@ pub(super) fn number(line: usize, word: &str) -> Result<f64, MeshError> {
     })
 }
 
-/// A line of an OBJ that cannot be understood.
+/// A line of an OBJ that cannot be parsed.
 pub(super) fn syntax(line: usize, message: String) -> MeshError {
     MeshError::Syntax {
         file: OBJ,
@@ -57,7 +57,7 @@ pub(super) fn syntax(line: usize, message: String) -> MeshError {
     }
 }
 
-/// A corner of a face that cannot be understood.
+/// A corner of a face that cannot be parsed.
 pub(super) fn corner_syntax(line: usize, word: &str) -> MeshError {
     syntax(
         line,
@@ -68,7 +68,7 @@ pub(super) fn corner_syntax(line: usize, word: &str) -> MeshError {
     )
 }
 
-/// At most 40 characters of what the client wrote, for messages.
+/// At most 40 characters of the client's text, for messages.
 pub(super) fn shorten(word: &str) -> String {
     word.chars().take(40).collect()
 }

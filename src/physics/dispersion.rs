@@ -1,4 +1,4 @@
-//! Gravity waves: how fast a wave of a given length runs.
+//! Dispersion of gravity waves: frequency from wavelength.
 
 use super::constants::GRAVITY_M_PER_S2;
 

@@ -1,7 +1,7 @@
 //! Formulas of light and water in f64: one function each, with equation, source, units and domain.
 //!
-//! Depends on nothing of ours. `shaders/lib/` holds the same functions in f32 under the same names; `registry` ties the
-//! twins with domain and tolerance, and a test fails if either half is missing.
+//! Depends on no other module of ours. `shaders/lib/` holds the same functions in f32 under the same names; `registry` lists each
+//! pair with domain and tolerance, and a test fails if either half is missing.
 //!
 //! To add a formula: write it here and in `shaders/lib/`, add a row to [`registry::TWINS`]; the tests do the rest.
 

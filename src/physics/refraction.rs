@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// (η cos θ_t)² = (η − 1)(η + 1) + cos² θ_i for incidence cosine `cos_i` (0 … 1) and `eta` = n_to / n_from: no digit is lost where η
-/// is near 1 or light grazes. Below 0 at total internal reflection. Source: Snell's law, sin θ_i = η sin θ_t, squared.
+/// (η cos θ_t)² = (η − 1)(η + 1) + cos² θ_i for incidence cosine `cos_i` (0 … 1) and `eta` = n_to / n_from: accurate also for η
+/// near 1 and at grazing incidence. Negative at total internal reflection. Source: Snell's law, sin θ_i = η sin θ_t, squared.
 pub fn refracted_square(cos_i: f64, eta: f64) -> f64 {
     (eta - 1.0) * (eta + 1.0) + cos_i * cos_i
 }
@@ -22,11 +22,13 @@ pub fn refract_direction(direction: DVec3, normal: DVec3, eta: f64) -> Option<DV
     Some((direction / eta + normal * (cos_i / eta - cos_t)).normalize())
 }
 
-/// Horizontal distance (m) from the foot of a light to where its ray enters flat water on the way to a point.
+/// Horizontal distance (m) from the foot of a light (the point on the water below it) to where its ray to an underwater point
+/// enters flat water.
 ///
 /// The light is `height_m` (0 …) above the water, the point `depth_m` (0 …) under it and `distance_m` (0 …) away from the light's
-/// foot: the x in 0 … `distance_m` with x/√(x² + h²) = η (r − x)/√((r − x)² + d²), found by bisection to the last digit. Of a point on
-/// the surface `distance_m` itself. Source: Snell's law; Tipprasert's thesis, §4.2.1, eq. 2-8, takes the ray to an object's origin.
+/// foot: the x in 0 … `distance_m` with x/√(x² + h²) = η (r − x)/√((r − x)² + d²), found by bisection to the last digit. For a
+/// point on the surface: `distance_m` itself. Source: Snell's law; Tipprasert's thesis, §4.2.1, eq. 2-8, takes the ray to an
+/// object's origin.
 pub fn entry_distance(height_m: f64, depth_m: f64, distance_m: f64, eta: f64) -> f64 {
     let sine = |x: f64, y: f64| if x > 0.0 { x / x.hypot(y) } else { 0.0 };
     let (mut low, mut high) = (0.0, distance_m);

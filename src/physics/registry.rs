@@ -1,13 +1,14 @@
-//! The twins: every function of `shaders/lib/`, with its f64 original, its domain, and how far f32 may be off.
+//! The twins: every function of `shaders/lib/`, with its f64 original, its domain and the tolerance of f32.
 //!
-//! A test lists the functions of `shaders/lib/` and fails for one without a row; the GPU tests and the self-check run every
-//! row over its domain: zeros of both signs, numbers below the smallest normal one, neighbours of 1, both ends.
+//! A test lists the functions of `shaders/lib/` and fails for one without a row. The GPU tests and the self-check run every row
+//! over its domain, including zeros of both signs, subnormal numbers, neighbours of 1, and both ends.
 //!
-//! WGSL lets a GPU take numbers below 2⁻¹²⁶ for 0, as arguments and on the way: a result counts that is right for the arguments as
-//! they are or for those with such numbers taken for 0, and bounds have a part for what is lost on the way.
+//! WGSL lets a GPU flush numbers below 2⁻¹²⁶ to 0, in arguments and in intermediate results. So a result is accepted if it is
+//! right for the arguments as given or with such arguments flushed to 0, and the bounds include what is lost in intermediate
+//! results.
 //!
-//! - `domain`: what arguments are tried;
-//! - `bounds`: how far f32 may be off where that depends on the arguments;
+//! - `domain`: the arguments to test with;
+//! - `bounds`: the tolerances that depend on the arguments;
 //! - `rows`: the twins.
 
 mod bounds;
@@ -17,7 +18,7 @@ mod rows;
 pub use domain::{Domain, Spacing, samples};
 pub use rows::{CALL_PRELUDE, TWINS};
 
-/// How far the f32 value may be off: |error| ≤ absolute + relative · |true value| + conditioning(arguments).
+/// Tolerance of the f32 value: |error| ≤ absolute + relative · |true value| + conditioning(arguments).
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// Absolute part.
@@ -26,18 +27,18 @@ pub struct Tolerance {
     pub relative: f64,
     /// Part that depends on the arguments.
     pub conditioning: fn(&[f64]) -> f64,
-    /// Where the figures come from: "derived" from the roundings of each step, or "measured".
+    /// Origin of the figures: "derived" from the roundings of each step, or "measured".
     pub reason: &'static str,
 }
 
 impl Tolerance {
-    /// Most that the result may be off `truth` at these arguments.
+    /// Largest accepted difference of the result from `truth` at these arguments.
     pub fn allowed(&self, arguments: &[f64], truth: f64) -> f64 {
         self.absolute + self.relative * truth.abs() + (self.conditioning)(arguments)
     }
 }
 
-/// A function in both languages.
+/// A function in Rust and in WGSL.
 #[derive(Clone, Copy, Debug)]
 pub struct Twin {
     /// Its name in Rust and WGSL.
@@ -48,14 +49,14 @@ pub struct Twin {
     pub domain: &'static [Domain],
     /// WGSL expression of type vec4f over `a: array<f32, 8>`.
     pub call: &'static str,
-    /// The same in f64; `None` where a rounding decides between two right answers: any number is right there.
+    /// The same in f64; `None` where rounding decides between two right answers, so that any number is accepted.
     pub original: fn(&[f64]) -> Option<[f64; 4]>,
-    /// How far off f32 may be.
+    /// Tolerance of the f32 value.
     pub tolerance: Tolerance,
 }
 
 impl Twin {
-    /// Error of `found` at these arguments as a share of what is allowed; infinite for what is no number.
+    /// Error of `found` at these arguments as a share of the tolerance; infinite for NaN.
     pub fn error(&self, arguments: &[f64], found: [f32; 4]) -> f64 {
         if found.iter().any(|value| !value.is_finite()) {
             return f64::INFINITY;

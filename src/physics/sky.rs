@@ -2,12 +2,13 @@
 
 use super::fresnel::fresnel_transmittance;
 
-/// Irradiance from a uniform sky of `radiance` (W/(m² sr)) on a surface whose unit normal has the upward component
-/// `normal_y`, `depth_m` under flat water that lets `transmittance` through and takes `c_per_m` away along paths
-/// `path_factor` times the depth: π L T e^(−c f d) F(n_y), F from [`cone_share`] with `sin2_cone` = 1/n² under water (the whole
-/// sky stands in a cone of the critical angle there) and 1 in air.
+/// Irradiance from a uniform sky of `radiance` (W/(m² sr)) on a surface whose unit normal has the upward component `normal_y`,
+/// `depth_m` under flat water with transmittance `transmittance` and extinction `c_per_m`, along paths of `path_factor` times the
+/// depth: π L T e^(−c f d) F(n_y), F from [`cone_share`] with `sin2_cone` = 1/n² under water (the whole sky stands in a cone of
+/// the critical angle there) and 1 in air.
 ///
-/// One path length and one transmittance for all directions are approximations: exact for horizontal surfaces in clear water.
+/// One path length and one transmittance for all directions is an approximation. It is exact for horizontal surfaces in clear
+/// water.
 pub fn sky_irradiance(
     radiance: f64,
     transmittance: f64,
@@ -27,9 +28,9 @@ pub fn sky_irradiance(
 /// Irradiance from an evenly bright cone around the zenith on a plane whose unit normal has the upward component `normal_y`, as
 /// a share of that on a horizontal one; `sin2_cone` (1/16 … 1: indices up to 4) is the square of the sine of the cone's half angle.
 ///
-/// n_y while the plane sees all of the cone, 0 when it sees none; between, with σ the half angle, x = cot σ, s = sin θ,
-/// y = −x n_y / s: ((n_y acos y − x s √(1−y²)) sin²σ + atan2(s √(1−y²), x)) / (π sin²σ). The hemisphere, sin²σ = 1, gives
-/// (1 + n_y)/2. Source: Lagarde & de Rousiers, "Moving Frostbite to PBR" (2014), listing 8, after Snyder (1996).
+/// n_y if the whole cone is above the plane, 0 if none of it is; in between, with σ the half angle, x = cot σ, s = sin θ, y = −x
+/// n_y / s: ((n_y acos y − x s √(1−y²)) sin²σ + atan2(s √(1−y²), x)) / (π sin²σ). The hemisphere, sin²σ = 1, gives (1 + n_y)/2.
+/// Source: Lagarde & de Rousiers, "Moving Frostbite to PBR" (2014), listing 8, after Snyder (1996).
 pub fn cone_share(normal_y: f64, sin2_cone: f64) -> f64 {
     let sin_cone = sin2_cone.sqrt();
     if normal_y >= sin_cone {

@@ -1,4 +1,4 @@
-//! Solid angles of triangles: the light of a point goes out evenly over them.
+//! Solid angles of triangles, to which the flux of a point light is proportional.
 
 use glam::DVec3;
 
@@ -10,9 +10,9 @@ pub fn point_angle(y: f64, x: f64) -> f64 {
 
 /// Solid angle of the triangle with corners `a`, `a + ab`, `a + ac`, seen from the origin, sr, −2π … 2π.
 ///
-/// tan(Ω/2) = a·(b × c) / (abc + (a·b)c + (a·c)b + (b·c)a); above 0 where `ab` × `ac` looks away from the origin. Source: Van Oosterom &
-/// Strackee, IEEE Transactions on Biomedical Engineering 30, 1983, eq. 8. The triple product is that of a, ab and ac, which
-/// is the same and keeps the last digits of small triangles.
+/// tan(Ω/2) = a·(b × c) / (abc + (a·b)c + (a·c)b + (b·c)a); positive if `ab` × `ac` points away from the origin. Source: Van
+/// Oosterom & Strackee, IEEE Transactions on Biomedical Engineering 30, 1983, eq. 8. The triple product is computed from a, ab
+/// and ac, which is equal and accurate for small triangles.
 pub fn solid_angle(a: DVec3, ab: DVec3, ac: DVec3) -> f64 {
     let (b, c) = (a + ab, a + ac);
     let (a_m, b_m, c_m) = (a.length(), b.length(), c.length());

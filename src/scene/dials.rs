@@ -1,7 +1,7 @@
-//! A method's choice in a scene, and the dials that only this method has.
+//! The choice of a method in a scene, and the dials that only this method has.
 //!
-//! What methods there are and which dials they have is no matter of this room: a method declares each of its dials as a [`Dial`], and
-//! whoever knows the methods checks what a scene says against these.
+//! This module does not know which methods exist. A method declares each of its dials as a [`Dial`]; `methods` checks a scene's
+//! choice against them.
 
 use std::collections::BTreeMap;
 
@@ -20,30 +20,32 @@ use super::quality::Quality;
 use super::ranges::number;
 use super::strict::{carry, one_of, quoted};
 
-/// Field of the object form that holds the method's name; no dial may have this name.
+/// Field that holds the method's name in the object form. No dial may have this name.
 pub const KIND: &str = "kind";
 
-/// What `quality.method` may be, in words.
-const ACCEPTED: &str = "a method's name, or an object of its name as `kind` and its dials";
+/// The accepted forms of `quality.method`, for messages.
+const ACCEPTED: &str =
+    "a method's name, or an object with the name as `kind` and the method's dials";
 
-/// Largest whole number that f64 and JSON readers of other languages hold exactly.
+/// Whole numbers below this are exact in f64 and in JSON readers of other languages.
 const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// Which method carries light to the receivers, with those of its own dials that are not at their defaults.
+/// The method that carries light to the receivers, and its dials that are not at their defaults.
 ///
-/// In JSON a word, or an object of `kind` and dials. Written as briefly as it can be, so that equal choices have equal texts.
+/// In JSON: the method's name, or an object with `kind` and dials. It is written in the shortest form, so that equal choices have
+/// equal texts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MethodChoice {
-    /// Its name; `None`: the default method.
+    /// The method's name. `None` is the default method.
     pub kind: Option<String>,
-    /// Its dials by name; those that are absent have their defaults.
+    /// The dials by name. An absent dial has its default.
     pub dials: BTreeMap<String, DialValue>,
 }
 
 /// The value of a method's dial.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DialValue {
-    /// A number; JSON has no others than finite ones.
+    /// A finite number (JSON has no others).
     Number(f64),
     /// A word.
     Word(String),
@@ -65,7 +67,7 @@ impl MethodChoice {
         self
     }
 
-    /// Whether it is the default method with its dials at their defaults: then it need not be written.
+    /// Whether it is the default method with all dials at their defaults. Such a choice is omitted from JSON.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
     }
@@ -101,7 +103,7 @@ impl std::fmt::Display for DialValue {
 impl From<&DialValue> for Value {
     fn from(value: &DialValue) -> Self {
         match value {
-            // Whole numbers are written as such, however they were read.
+            // A whole number is written as an integer, even if it was read as a float.
             DialValue::Number(value) if value.fract() == 0.0 && value.abs() < MOST_EXACT => {
                 Self::from(*value as i64)
             }
@@ -186,7 +188,8 @@ impl PartialSchema for MethodChoice {
     }
 }
 
-/// Called `Method` in `openapi.yaml`, where the faces put the schema of the methods there are in place of this neutral one.
+/// Called `Method` in `openapi.yaml`. The CLI and the HTTP service replace this generic schema by the one generated from the list
+/// of methods.
 impl ToSchema for MethodChoice {
     fn name() -> std::borrow::Cow<'static, str> {
         "Method".into()
@@ -198,7 +201,7 @@ impl ToSchema for MethodChoice {
 pub struct Dial {
     /// Its name in JSON, in snake case, with its unit where it has one.
     pub name: &'static str,
-    /// What it does: unit, effect, and what it does not do. Range and default are added where this is shown.
+    /// Unit, effect, and what the dial does not do. Range and default are added by [`Dial::documentation`].
     pub help: &'static str,
     /// Values it takes.
     pub kind: DialKind,
@@ -213,7 +216,7 @@ pub enum DialKind {
         least: u32,
         /// Largest accepted value.
         most: u32,
-        /// Where the scene does not say.
+        /// Value if the scene sets none.
         default: u32,
     },
     /// A number.
@@ -222,14 +225,14 @@ pub enum DialKind {
         least: f64,
         /// Largest accepted value.
         most: f64,
-        /// Where the scene does not say.
+        /// Value if the scene sets none.
         default: f64,
     },
     /// One of some words.
     Word {
         /// The words; never empty.
         words: &'static [DialWord],
-        /// Where the scene does not say.
+        /// Value if the scene sets none.
         default: &'static str,
     },
 }
@@ -244,7 +247,8 @@ pub struct DialWord {
 }
 
 impl Dial {
-    /// The whole number that `quality` sets, or the default where it sets none that is accepted; 0 of a dial of another kind.
+    /// The integer that `quality` sets, or the default if it sets none or one that is not accepted. 0 if the dial is not
+    /// [`DialKind::Integer`].
     pub fn integer(&self, quality: &Quality) -> u32 {
         let DialKind::Integer { default, .. } = self.kind else {
             return 0;
@@ -255,7 +259,7 @@ impl Dial {
         }
     }
 
-    /// The number that `quality` sets, or the default where it sets none that is accepted; 0 of a dial of words.
+    /// The number that `quality` sets, or the default if it sets none or one that is not accepted. 0 if the dial takes words.
     pub fn number(&self, quality: &Quality) -> f64 {
         match (self.set_by(quality), self.kind) {
             (Some(DialValue::Number(value)), _) => *value,
@@ -265,7 +269,7 @@ impl Dial {
         }
     }
 
-    /// The word that `quality` sets, or the default where it sets none that is accepted; empty of a dial of numbers.
+    /// The word that `quality` sets, or the default if it sets none or one that is not accepted. Empty if the dial takes numbers.
     pub fn word(&self, quality: &Quality) -> &'static str {
         let DialKind::Word { words, default } = self.kind else {
             return "";
@@ -301,7 +305,7 @@ impl Dial {
         }
     }
 
-    /// What is accepted, in words.
+    /// The accepted values, for messages.
     pub fn accepted(&self) -> String {
         match self.kind {
             DialKind::Integer { least, most, .. } => format!("an integer, {least} … {most}"),
@@ -312,7 +316,7 @@ impl Dial {
         }
     }
 
-    /// The words it takes, none where it takes numbers.
+    /// The accepted words; empty if the dial takes numbers.
     pub fn words(&self) -> Vec<&'static str> {
         match self.kind {
             DialKind::Word { words, .. } => words.iter().map(|word| word.name).collect(),
@@ -320,7 +324,7 @@ impl Dial {
         }
     }
 
-    /// Its value where the scene does not say.
+    /// Its value if the scene sets none.
     pub fn default_value(&self) -> DialValue {
         match self.kind {
             DialKind::Integer { default, .. } => default.into(),
@@ -329,7 +333,7 @@ impl Dial {
         }
     }
 
-    /// What is wrong with `value`, if anything, as a finding at the value itself.
+    /// The finding about `value` if it is not accepted, with an empty pointer (the value itself).
     pub fn issue_with(&self, value: &DialValue) -> Option<Issue> {
         if self.accepts(value) {
             return None;
@@ -357,7 +361,7 @@ impl Dial {
         Some(Issue::invalid("", detail, self.accepted()))
     }
 
-    /// Help, words with what they mean, range and default, in one line.
+    /// Help text, meaning of each word, range and default, in one line.
     pub fn documentation(&self) -> String {
         let mut text = self.help.to_owned();
         match self.kind {
@@ -383,7 +387,7 @@ impl Dial {
         text
     }
 
-    /// Its schema.
+    /// The JSON schema of its values.
     pub fn schema(&self) -> Schema {
         let base = ObjectBuilder::new()
             .description(Some(self.documentation()))
@@ -405,7 +409,7 @@ impl Dial {
     }
 }
 
-/// The value of `quality.method` as an object, for those who set a dial in JSON: a word becomes the object of that kind.
+/// Turns the value of `quality.method` into an object, so that a dial can be set in it: a name becomes an object of that `kind`.
 pub(super) fn as_object(method: &mut Value) {
     match method {
         Value::String(kind) => *method = json!({ KIND: std::mem::take(kind) }),

@@ -1,4 +1,4 @@
-//! What is wrong with a scene: every finding says where (JSON pointer), what, and what would be accepted.
+//! Errors of a scene. Every finding states where (JSON pointer), what is wrong, and what is accepted.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ pub struct SceneError {
     pub issues: Vec<Issue>,
 }
 
-/// The sort of a finding, from the most basic to the most particular.
+/// The kind of a finding, from the most basic to the most specific.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema,
 )]
@@ -25,21 +25,21 @@ pub enum IssueKind {
     Invalid,
     /// A value above a limit of this installation (`GET /v1/info`).
     LimitExceeded,
-    /// A mesh id that is not in the store: after uploading the mesh the same scene is accepted.
+    /// A mesh id that is not in the store. Once the mesh is uploaded, the same scene is accepted.
     UnknownMesh,
 }
 
 /// One finding.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Issue {
-    /// The sort of finding.
+    /// The kind of finding.
     #[serde(default)]
     pub kind: IssueKind,
-    /// JSON pointer (RFC 6901) to the offending value, or to where a missing value belongs.
+    /// JSON pointer (RFC 6901) to the wrong value, or to the place of a missing one.
     pub pointer: String,
     /// What is wrong with it.
     pub detail: String,
-    /// What would be accepted.
+    /// What is accepted there.
     pub accepted: String,
 }
 
@@ -58,7 +58,7 @@ impl Issue {
         }
     }
 
-    /// The same finding as another sort.
+    /// The same finding with another kind.
     #[must_use]
     pub fn of_kind(self, kind: IssueKind) -> Self {
         Self { kind, ..self }
@@ -66,7 +66,7 @@ impl Issue {
 }
 
 impl SceneError {
-    /// The most basic sort among the findings: `UnknownMesh` only when nothing else is wrong.
+    /// The most basic kind among the findings: `UnknownMesh` only if nothing else is wrong.
     pub fn kind(&self) -> IssueKind {
         self.issues
             .iter()

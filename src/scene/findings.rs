@@ -1,10 +1,10 @@
-//! Collects what is wrong with a scene while it is walked.
+//! Collects the findings while a scene is checked.
 
 use super::error::{Issue, IssueKind};
 use super::json::MAX_ISSUES;
 use super::ranges::{Integer, Range, number};
 
-/// Findings so far; after [`MAX_ISSUES`] they are only counted.
+/// Findings so far. After the first [`MAX_ISSUES`], further ones are only counted.
 #[derive(Debug, Default)]
 pub(super) struct Findings {
     issues: Vec<Issue>,
@@ -12,7 +12,7 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    /// All findings, with a last one that says how many were left out.
+    /// All listed findings; a last one states the number of those not listed.
     pub(super) fn into_issues(mut self) -> Vec<Issue> {
         if self.unlisted > 0 {
             let detail = format!("{} more findings are not listed", self.unlisted);
@@ -50,7 +50,7 @@ impl Findings {
         self.push(issue.of_kind(IssueKind::LimitExceeded));
     }
 
-    /// Whether a list is short enough to be looked at item by item.
+    /// Whether a list is short enough to be checked item by item.
     pub(super) fn count(&mut self, pointer: &str, what: &str, count: usize, limit: usize) -> bool {
         if count > limit {
             self.over_limit(

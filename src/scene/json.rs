@@ -1,5 +1,5 @@
-//! Bytes in, JSON value out, stricter than `serde_json::from_slice`: a key that stands twice is an error, and every error
-//! says where.
+//! Reads bytes into a JSON value, more strictly than `serde_json::from_slice`: a duplicate key is an error, and every error has a
+//! position.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -10,18 +10,18 @@ use serde_json::{Map, Number, Value};
 use super::error::{Issue, IssueKind, SceneError};
 use super::pointer::Path;
 
-/// Largest JSON text, bytes. A scene at all its limits is far below; a value takes many times its text in memory.
+/// Largest JSON text, bytes. A scene at all its limits is far smaller. (A parsed value takes many times the memory of its text.)
 pub const MAX_JSON_BYTES: usize = 4 << 20;
 
-/// Most findings that are listed.
+/// Maximum number of listed findings.
 pub(super) const MAX_ISSUES: usize = 100;
 
 /// Reads one JSON document.
 ///
 /// # Errors
 ///
-/// Text that is empty, longer than [`MAX_JSON_BYTES`] or not JSON, numbers beyond f64, nesting deeper than 127 levels,
-/// anything after the document, and keys that stand twice in an object (all of them are listed).
+/// Text that is empty, longer than [`MAX_JSON_BYTES`] or not JSON; numbers beyond f64; nesting deeper than 127 levels; text after
+/// the document; and duplicate keys in an object (all of them are listed).
 pub fn read(bytes: &[u8]) -> Result<Value, SceneError> {
     if bytes.len() > MAX_JSON_BYTES {
         let detail = format!("the text has {} bytes", bytes.len());
@@ -52,7 +52,7 @@ pub fn read(bytes: &[u8]) -> Result<Value, SceneError> {
     }
 }
 
-/// Puts serde_json's message into our words.
+/// Translates serde_json's message into a finding.
 fn syntax_issue(error: &serde_json::Error, failed_at: Option<String>) -> SceneError {
     let (line, column) = (error.line(), error.column());
     let message = error.to_string();
@@ -72,7 +72,7 @@ fn syntax_issue(error: &serde_json::Error, failed_at: Option<String>) -> SceneEr
         ),
         "trailing characters" => (
             String::new(),
-            "something follows the JSON document",
+            "there is text after the JSON document",
             "one JSON document and nothing after it",
         ),
         other => (String::new(), other, "well-formed JSON (RFC 8259)"),
@@ -83,7 +83,7 @@ fn syntax_issue(error: &serde_json::Error, failed_at: Option<String>) -> SceneEr
         .into()
 }
 
-/// What is seen on the way.
+/// Notes taken while reading.
 #[derive(Default)]
 struct Notes {
     duplicates: RefCell<Vec<Issue>>,
@@ -102,7 +102,7 @@ impl<'de> DeserializeSeed<'de> for Seed<'_> {
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
         deserializer.deserialize_any(self).inspect_err(|_| {
-            // The innermost value fails first, and is the one to name.
+            // The innermost value fails first; its path is the one to report.
             self.notes
                 .failed_at
                 .borrow_mut()
@@ -169,7 +169,7 @@ impl<'de> Visitor<'de> for Seed<'_> {
                 if duplicates.len() < MAX_ISSUES {
                     duplicates.push(Issue::invalid(
                         pointer,
-                        "the key stands twice in its object",
+                        "the key occurs twice in its object",
                         "each key once",
                     ));
                 }

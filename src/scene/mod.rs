@@ -1,10 +1,16 @@
-//! The scene: what a request may say (`types`, `quality`, `dials`: a method and what only this method can be told), how JSON becomes it (`json` reads text, `strict` reads values, `parse` puts
-//! them together), what is refused (`ranges`, `validate`, `validate_output`), how single fields are replaced from outside
-//! (`overrides`), and how mesh ids become meshes (`resolve`). Which methods there are is known above, in `methods`: faces and tests
-//! therefore resolve scenes there.
+//! The scene: the JSON that a request consists of.
 //!
-//! To add a field: put it into `types` with unit, range and default in its doc comment, its range into `ranges`, check it in
-//! `validate`, and run the tests, which tell where `openapi.yaml` has to follow.
+//! - `types`, `quality`, `dials`: the fields (`dials`: the choice of a method, and the dials that only this method has);
+//! - `json` reads text, `strict` reads values, `parse` puts the two together;
+//! - `ranges`, `validate`, `validate_output`: which values are refused;
+//! - `overrides`: single fields replaced from outside, as by command-line flags;
+//! - `resolve`: mesh ids become meshes.
+//!
+//! The list of methods is known to `methods` only, which therefore has a `resolve` of its own: the CLI, the HTTP service and the
+//! tests call that one.
+//!
+//! To add a field: put it into `types` with unit, range and default in its doc comment, put its range into `ranges`, check it in
+//! `validate`, and run the tests: they report where `openapi.yaml` has to change.
 
 pub mod dials;
 pub mod error;

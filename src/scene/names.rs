@@ -1,4 +1,4 @@
-//! What field names tell: their unit, and which field a misspelt one was meant to be.
+//! Field names: the unit that a name ends with, and the field that a misspelt name was meant to be.
 
 use super::strict::quoted;
 
@@ -18,7 +18,7 @@ const UNITS: [(&str, &str); 9] = [
 /// The longest name that is compared letter by letter.
 const MAX_COMPARED: usize = 64;
 
-/// The unit a field name carries.
+/// The unit that a field name ends with.
 pub(super) fn unit_of(field: &str) -> Option<&'static str> {
     UNITS
         .iter()
@@ -47,16 +47,16 @@ pub fn meant<'a>(given: &str, fields: &[&'a str]) -> Option<&'a str> {
         .map(|(_, field)| field)
 }
 
-/// Why an unknown field beside `method` is none, and what to write instead: it may be a dial, which stands within `method`, or
-/// a field that older versions had. `None` where no `method` stands, or the field is a misspelt one.
+/// Why a field beside `method` is unknown, and what to write instead: it may be a dial, which belongs inside `method`, or a field
+/// of older versions. `None` if `method` is not among `fields`, or if `given` is a misspelt field.
 pub(super) fn moved(given: &str, fields: &[&str]) -> Option<(&'static str, String)> {
     if !fields.contains(&"method") {
         return None;
     }
     if given == "placement" {
         return Some((
-            "the method alone says where light is placed",
-            "`method` with the word that `placement` had, or no `method` where that was `hit`"
+            "it was removed; `method` alone selects how light is placed",
+            "`method` with the value that `placement` had, or no `method` if that was `hit`"
                 .to_owned(),
         ));
     }
@@ -65,7 +65,7 @@ pub(super) fn moved(given: &str, fields: &[&str]) -> Option<(&'static str, Strin
     }
     let given = quoted(given);
     Some((
-        "a dial that only some methods have stands with the method's name",
+        "a dial that only some methods have belongs inside `method`",
         format!("`\"method\": {{ \"kind\": \"…\", \"{given}\": … }}`"),
     ))
 }
@@ -93,7 +93,7 @@ fn stem_of(field: &str) -> &str {
         .unwrap_or(field)
 }
 
-/// `depth` of `depth_cm`: the name before what may be a unit of somebody else's.
+/// `depth` of `depth_cm`: the name before what may be a unit that we do not use.
 fn stem_before_unit(name: &str) -> &str {
     match name.rsplit_once('_') {
         Some((stem, unit)) if unit.len() <= 4 => stem,
@@ -101,7 +101,7 @@ fn stem_before_unit(name: &str) -> &str {
     }
 }
 
-/// Levenshtein distance: the fewest letters to put in, take out or replace.
+/// Levenshtein distance: the smallest number of letters to insert, delete or replace.
 fn edits(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

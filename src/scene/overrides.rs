@@ -1,8 +1,8 @@
-//! Single fields of a scene replaced from outside, as by command-line flags.
+//! Replaces single fields of a scene from outside, as by command-line flags.
 //!
-//! Which fields there are follows from the types, so a new field of `quality` or `output` has its flag without a second
-//! edit; the dials of methods join them above, in `methods::fields`. Values are put into the JSON before it is read: whatever is wrong with them is said by the same words as if they
-//! had stood in the scene.
+//! The list of fields follows from the types, so a new field of `quality` or `output` gets its flag without a second edit.
+//! `methods::fields` adds the dials of methods. Values are put into the JSON before it is read, so an error in them has the same
+//! message as in a scene.
 
 use serde_json::{Map, Number, Value, json};
 use utoipa::openapi::{RefOr, Schema};
@@ -17,21 +17,20 @@ use super::types::{IrradianceMapOutput, Output, ViewOutput};
 pub struct Field {
     /// Its name in the scene.
     pub name: String,
-    /// Its flag without the dashes in front: `water-cells`; with the section in front where `output` has the name too:
+    /// Its flag without the leading dashes: `water-cells`. If `output` has a field of the same name, the section is prefixed:
     /// `quality-layers`.
     pub flag: String,
     /// JSON pointer to it.
     pub pointer: String,
-    /// What it means: the text of `openapi.yaml`.
+    /// Its description, as in `openapi.yaml`.
     pub help: String,
-    /// Words it may hold, empty where it holds numbers.
+    /// Accepted words; empty if it takes numbers.
     pub words: Vec<String>,
-    /// Whether it holds several values, which are then separated by commas.
+    /// Whether it takes several values, separated by commas.
     pub is_list: bool,
 }
 
-/// Every field of `quality` and of all kinds of `output`, in the order of their names; a field that several kinds share is
-/// there once.
+/// Every field of `quality` and of all kinds of `output`, sorted by name. A field that several kinds share is listed once.
 pub fn fields() -> Vec<Field> {
     let mut fields = fields_of::<Quality>("/quality");
     fields.sort_by(|a, b| a.name.cmp(&b.name));
@@ -52,7 +51,7 @@ pub fn fields() -> Vec<Field> {
     fields
 }
 
-/// Joins what two kinds of output say about a field of the same name.
+/// Merges the fields of the same name of two kinds of output.
 fn merge(known: &mut Field, other: Field) {
     if known.help != other.help {
         known.help = format!("View: {} Irradiance map: {}", known.help, other.help);
@@ -67,14 +66,14 @@ fn merge(known: &mut Field, other: Field) {
 /// Pointer to the choice of the method.
 pub const METHOD: &str = "/quality/method";
 
-/// Replaces the values at some pointers, in order; later ones win.
+/// Replaces the values at the given pointers, in order; later ones win.
 ///
-/// A missing `output` becomes a view. Naming another method drops the dials of the one before; setting a dial makes an object of a
-/// method that was given as a word. A place that cannot be reached, because something that is no object stands in the way, is left as it
-/// is: reading the scene will refuse it.
+/// A missing `output` becomes a view. Another method drops the dials of the previous one. Setting a dial turns a method given by
+/// name into an object. A place that cannot be reached, because a value on the path is not an object, is left unchanged: reading
+/// the scene will refuse it.
 pub fn apply(value: &mut Value, overrides: &[(String, String)]) {
     let known = fields();
-    // The kinds first: they decide what else is accepted, and a missing output needs one.
+    // Kinds first: they decide which other fields are accepted, and a missing output needs one.
     let is_kind = |pointer: &str| pointer == "/output/kind" || pointer == METHOD;
     let (kinds, others): (Vec<_>, Vec<_>) =
         overrides.iter().partition(|(pointer, _)| is_kind(pointer));
@@ -94,7 +93,7 @@ pub fn apply(value: &mut Value, overrides: &[(String, String)]) {
     }
 }
 
-/// Whether a pointer is that of a method's dial.
+/// Whether the pointer is that of a method's dial.
 pub fn is_dial(pointer: &str) -> bool {
     pointer
         .strip_prefix(METHOD)
@@ -124,7 +123,7 @@ fn replace(value: &mut Value, pointer: &str, replacement: Value) {
     }
 }
 
-/// What a missing object is before its fields are put in.
+/// The initial value of a missing object.
 fn fresh(key: &str) -> Value {
     let default_output = || serde_json::to_value(Output::default()).unwrap_or_default();
     match key {
@@ -138,12 +137,12 @@ fn list(text: &str) -> Value {
     Value::Array(items.filter(|item| !item.is_empty()).map(single).collect())
 }
 
-/// A number, `true`, `false`, or else a word.
+/// A number, `true` or `false`; anything else is a word.
 fn single(text: &str) -> Value {
     let text = text.trim();
     match serde_json::from_str(text) {
         Ok(value @ (Value::Number(_) | Value::Bool(_))) => value,
-        // Rust reads `.5` and `+1` too, which JSON does not.
+        // Rust also reads `.5` and `+1`, which are not JSON.
         _ => text
             .parse()
             .ok()

@@ -1,4 +1,4 @@
-//! JSON in, [`Scene`] out, and the helpers that `types` reads its less regular values with.
+//! Reads JSON into a [`Scene`], and has the helpers with which `types` reads its irregular values.
 
 use serde::de::{DeserializeOwned, Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -12,18 +12,18 @@ use super::ranges::Integer;
 use super::strict::carry;
 use super::types::Scene;
 
-/// A rotation whose length differs less from 1 is left as it is, so that reading what was written changes nothing.
+/// A rotation whose length is closer to 1 than this is left unchanged, so that writing and reading a scene changes nothing.
 const UNIT_LENGTH_EPSILON: f64 = 4.0 * f64::EPSILON;
 
 /// How far the length of a rotation may be from 1.
 pub const ROTATION_LENGTH_TOLERANCE: f64 = 1e-3;
 
 impl Scene {
-    /// Reads a scene; ranges and references are for [`Scene::validate`].
+    /// Reads a scene. Ranges and references are checked by [`Scene::validate`].
     ///
     /// # Errors
     ///
-    /// Text that is not JSON, keys that stand twice, and the first value that is unknown, missing or of the wrong type.
+    /// Text that is not JSON, duplicate keys, and the first value that is unknown, missing or of the wrong type.
     pub fn from_json(bytes: &[u8]) -> Result<Self, SceneError> {
         Self::from_value(read_json(bytes)?)
     }
@@ -42,7 +42,7 @@ impl Scene {
     }
 }
 
-/// Reads an object by its `kind`.
+/// Reads an object whose type is selected by its `kind`.
 pub(super) fn tagged<'de, D: Deserializer<'de>, T>(
     deserializer: D,
     default_kind: Option<&str>,
@@ -80,12 +80,12 @@ pub(super) fn tagged<'de, D: Deserializer<'de>, T>(
     read(&kind, &value).map_err(D::Error::custom)
 }
 
-/// Reads the object that [`tagged`] has looked into; the error is a finding as text.
+/// Reads the object whose `kind` [`tagged`] has read; the error is a finding as text.
 pub(super) fn inner<T: DeserializeOwned>(value: &Value) -> Result<T, String> {
     from_value(value).map_err(|issue| carry(&issue))
 }
 
-/// Reads an integer, which may be written as 960.0 too.
+/// Reads an integer; 960.0 is accepted too.
 pub(super) fn integer<'de, I: Integer, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<u32, D::Error> {
@@ -118,7 +118,7 @@ pub(super) fn integer<'de, I: Integer, D: Deserializer<'de>>(
     deserializer.deserialize_any(Integral::<I>(std::marker::PhantomData))
 }
 
-/// The same, where the field may be absent or null.
+/// Like [`integer`], for a field that may be absent or null.
 pub(super) fn optional_integer<'de, I: Integer, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<u32>, D::Error> {
@@ -143,7 +143,7 @@ pub(super) fn integer_of<I: Integer>(value: &Value) -> Result<u32, Issue> {
     from_value::<Read<I>>(value).map(|read| read.0)
 }
 
-/// Reads a quaternion and makes its length 1 where it nearly is; any other is left to [`Scene::validate`].
+/// Reads a quaternion and normalises it if its length is nearly 1. Any other length is left for [`Scene::validate`] to refuse.
 pub(super) fn rotation<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 4], D::Error> {
     let read = <[f64; 4]>::deserialize(deserializer)?;
     let length = read.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -155,13 +155,13 @@ pub(super) fn rotation<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f6
     }
 }
 
-/// Refuses a value that is told apart by its JSON type.
+/// The error for a value of the wrong JSON type.
 pub(super) fn wrong_type<E: Error>(value: &Value, accepted: &str) -> E {
     let detail = format!("{} is of the wrong type", json_type(value));
     E::custom(carry(&Issue::invalid("", detail, accepted)))
 }
 
-/// A value by its type, and by itself where it is short.
+/// The type of a value and, if it is short, the value itself, for messages.
 pub(super) fn json_type(value: &Value) -> String {
     match value {
         Value::Null => "null".to_owned(),

@@ -1,8 +1,8 @@
-//! Where in a document: a path that becomes a JSON pointer (RFC 6901) only when something is wrong.
+//! Places in a document: a path that is turned into a JSON pointer (RFC 6901) only for an error.
 
 use std::fmt;
 
-/// A place in a JSON document, linked from the inside out.
+/// A place in a JSON document; each element links to its parent.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Path<'a> {
     /// The whole document.

@@ -1,4 +1,4 @@
-//! The ranges of a scene's numbers. Those of integers are types, so that `types` can name them where a field is read.
+//! The ranges of a scene's numbers. The range of an integer is a type, so that `types` can name it where the field is read.
 
 use std::fmt;
 
@@ -35,7 +35,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// A number as people write it: powers of ten where zeros would have to be counted.
+/// Formats a number for messages: in scientific notation below 10⁻³ and from 10⁶ on.
 pub(super) fn number(value: f64) -> String {
     let magnitude = value.abs();
     if magnitude != 0.0 && !(1e-3..1e6).contains(&magnitude) {
@@ -51,7 +51,7 @@ pub const TIME: Range = Range::new(-1e12, 1e12, "s");
 pub const COORDINATE: Range = Range::new(-1e6, 1e6, "m");
 /// `floor.size_m`, the height of an orthographic picture.
 pub const EXTENT: Range = Range::new(1e-6, 1e6, "m");
-/// Angles that may go round.
+/// Angles that may exceed a full turn.
 pub const TURNING_ANGLE: Range = Range::new(-1e6, 1e6, "degrees");
 /// `water.ior`.
 pub const IOR: Range = Range::new(1.0, 4.0, "");
@@ -91,7 +91,7 @@ pub const TARGET_ERROR: Range = Range::new(1e-4, 0.5, "");
 /// `quality.time_budget_ms`.
 pub const TIME_BUDGET: Range = Range::new(0.1, 3.6e6, "ms");
 
-/// Texels along a side of a floor map that does not say.
+/// Default number of texels along a side of a floor map.
 pub const DEFAULT_MAP_SIDE: u32 = 512;
 
 /// The range of an integer field.
@@ -101,7 +101,7 @@ pub trait Integer {
     /// Largest accepted value.
     const MAX: u32;
 
-    /// What is accepted, in words.
+    /// The accepted values, for messages.
     fn accepted() -> String {
         format!("an integer, {} … {}", Self::MIN, Self::MAX)
     }
@@ -133,7 +133,7 @@ integers! {
     MapTexels = 16..=4096;
     /// `quality.layers`.
     Layers = 1..=4;
-    /// `output.layer`; that it lies below `quality.layers` is checked where those are known.
+    /// `output.layer`. That it is below `quality.layers` is checked in `validate_output`.
     Layer = 0..=3;
     /// `quality.split_levels`.
     SplitLevels = 0..=8;
@@ -179,7 +179,7 @@ impl Integer for PngBits {
     }
 }
 
-/// `output.light`; whether there is such a light is checked where the lights are known.
+/// `output.light`. That the light exists is checked in `validate_output`.
 #[derive(Clone, Copy, Debug)]
 pub struct LightIndex;
 
@@ -192,7 +192,7 @@ impl Integer for LightIndex {
     }
 }
 
-/// `output.receiver` where it is a mesh.
+/// `output.receiver` if it is a mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct ReceiverIndex;
 

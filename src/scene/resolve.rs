@@ -1,4 +1,4 @@
-//! From mesh ids to meshes: the step between a scene that is valid and one that can be rendered.
+//! Looks up the meshes of a valid scene by their ids, so that it can be rendered.
 
 use std::sync::Arc;
 
@@ -7,17 +7,17 @@ use super::types::Scene;
 use crate::config::Limits;
 use crate::mesh::Mesh;
 
-/// A validated scene with the meshes its objects name: all a frame needs.
+/// A validated scene with the meshes of its objects: everything that a frame needs.
 #[derive(Clone, Debug)]
 pub struct ResolvedScene {
-    /// The scene as asked for.
+    /// The scene as requested.
     pub scene: Scene,
     /// The mesh of each object, in the order of `scene.objects`.
     pub meshes: Vec<Arc<Mesh>>,
 }
 
 impl ResolvedScene {
-    /// `blake3:…` of the canonical JSON of the scene; meshes are in it by their content ids.
+    /// `blake3:…` of the canonical JSON of the scene, in which meshes are named by their content ids.
     pub fn hash(&self) -> String {
         let canonical = serde_json::to_vec(&self.scene).expect("a scene always serialises");
         format!("blake3:{}", blake3::hash(&canonical).to_hex())
@@ -28,8 +28,8 @@ impl ResolvedScene {
 ///
 /// # Errors
 ///
-/// All findings of [`Scene::validate`] and every unknown mesh together. [`SceneError::kind`] is
-/// [`IssueKind::UnknownMesh`] only when nothing but meshes is missing.
+/// All findings of [`Scene::validate`] and every unknown mesh together. [`SceneError::kind`] is [`IssueKind::UnknownMesh`] only
+/// if nothing else is wrong.
 pub fn resolve(
     scene: Scene,
     limits: &Limits,
@@ -43,7 +43,7 @@ pub fn resolve(
     for (index, object) in scene.objects.iter().take(limits.max_objects).enumerate() {
         match lookup(&object.mesh) {
             Some(mesh) => meshes.push(mesh),
-            // An empty id has been found by `validate`.
+            // `validate` has reported an empty id.
             None if object.mesh.is_empty() => {}
             None => issues.push(unknown_mesh(index, &object.mesh)),
         }
@@ -59,7 +59,7 @@ fn unknown_mesh(index: usize, id: &str) -> Issue {
     Issue::invalid(
         format!("/objects/{index}/mesh"),
         format!("there is no mesh `{}`", super::strict::quoted(id)),
-        "the id of an uploaded mesh, `blake3:…` as answered by POST /v1/meshes",
+        "the id of an uploaded mesh, `blake3:…`, from the answer of POST /v1/meshes",
     )
     .of_kind(IssueKind::UnknownMesh)
 }

@@ -1,6 +1,6 @@
-//! JSON value in, typed value out, as the schema says it: objects are objects and words are words (serde alone would also
-//! take an array for an object and `{"png": null}` for `"png"`), and an error knows its place even inside values that are
-//! told apart by `kind`.
+//! Reads a JSON value into a typed value, exactly as the schema says: only an object is read as an object, and only a string as a
+//! word (serde alone would also take an array for an object and `{"png": null}` for `"png"`). An error has its JSON pointer even
+//! inside objects whose type is selected by `kind`.
 
 use std::fmt;
 
@@ -34,8 +34,7 @@ pub fn from_value<T: DeserializeOwned>(value: &Value) -> Result<T, Issue> {
     .map_err(|error| Issue::invalid(error.pointer, error.detail, error.accepted))
 }
 
-/// A finding as the text of a serde error, from which [`ReadError`] makes the finding again: serde's errors have room for
-/// text only.
+/// Encodes a finding as the text of a serde error, because serde's errors carry text only. [`ReadError`] decodes it.
 pub(super) fn carry(issue: &Issue) -> String {
     let Issue {
         pointer,
@@ -65,10 +64,10 @@ pub fn quoted(text: &str) -> String {
     format!("{start}…")
 }
 
-/// The first thing that went wrong.
+/// The first error.
 #[derive(Debug)]
 struct ReadError {
-    /// From the root when `located`, else from the value that is being read.
+    /// From the root if `located`, else from the value that is being read.
     pointer: String,
     located: bool,
     detail: String,
@@ -85,7 +84,7 @@ impl ReadError {
         }
     }
 
-    /// Places an error that was found at or below `path`.
+    /// Prefixes the pointer of an error that was found at or below `path`.
     fn at(mut self, path: &Path<'_>) -> Self {
         if !self.located {
             self.pointer = format!("{path}{}", self.pointer);
@@ -172,7 +171,7 @@ impl Error for ReadError {
     }
 }
 
-/// What stands there, in the words of JSON.
+/// The value that was found, in JSON's terms.
 fn describe(unexpected: Unexpected<'_>) -> String {
     match unexpected {
         Unexpected::Bool(value) => format!("the boolean {value}"),
@@ -187,7 +186,7 @@ fn describe(unexpected: Unexpected<'_>) -> String {
     }
 }
 
-/// What serde expects, in the words of JSON.
+/// What serde expects, in JSON's terms.
 fn plain(expected: &dyn Expected) -> String {
     match expected.to_string().as_str() {
         "f64" => "a number".to_owned(),
@@ -198,7 +197,7 @@ fn plain(expected: &dyn Expected) -> String {
     }
 }
 
-/// Reads `value`, which stands at `path`.
+/// Reads `value`, which is at `path`.
 #[derive(Clone, Copy)]
 struct Strict<'a, 'p> {
     value: &'a Value,
@@ -332,7 +331,7 @@ impl<'de> SeqAccess<'de> for Items<'de, '_> {
         };
         let path = Path::Index(self.path, self.next);
         self.next += 1;
-        // Here, and not in `Strict`, which is gone when a value that was read well is then refused.
+        // The path is added here, not in `Strict`, because a value may be refused after `Strict` has read it and is gone.
         seed.deserialize(Strict { value, path })
             .map(Some)
             .map_err(|error| error.at(&path))

@@ -1,4 +1,4 @@
-//! What a request may say, field by field. Every default stands here once; `openapi.yaml` is generated from these types.
+//! The fields of a scene. Every default is stated here once; `openapi.yaml` is generated from these types.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -9,7 +9,7 @@ use super::quality::Quality;
 use super::ranges::{Integer, Layer, LightIndex, MapSide, PngBits, ReceiverIndex, ViewSide};
 use super::strict::carry;
 
-/// A scene: water, receivers, lights, a camera and what to make of them.
+/// A scene: water, receivers, lights, a camera and the output to make.
 ///
 /// Right-handed, Y up, metres, seconds, SI radiometry; angles in degrees; linear RGB (Rec. 709 primaries).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -18,17 +18,17 @@ pub struct Scene {
     /// The water body. Default: flat water at y = 0 with ior 1.333 and no absorption.
     #[serde(default)]
     pub water: Water,
-    /// The rectangular floor under the water; absent: bottomless.
+    /// The rectangular floor under the water. Default: none, the water has no bottom.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floor: Option<Floor>,
-    /// Suns, point lights and skies; may be empty (a black picture).
+    /// Suns, point lights and skies. May be empty: the picture is then black.
     #[serde(default)]
     pub lights: Vec<Light>,
     /// Mesh instances.
     #[serde(default)]
     #[schema(value_type = Vec<MeshInstance>)]
     pub objects: Vec<Object>,
-    /// Where the picture is taken from; needed by `output.kind = "view"` only.
+    /// The camera. Needed only if `output.kind` is `view`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<Camera>,
     /// The dials that trade accuracy for time.
@@ -37,7 +37,7 @@ pub struct Scene {
     /// What to make.
     #[serde(default)]
     pub output: Output,
-    /// Moment of the frame, s. Default 0. Range −10¹² … 10¹².
+    /// Time of the frame, s, −10¹² … 10¹². Default 0.
     #[serde(default)]
     pub time_s: f64,
 }
@@ -55,11 +55,11 @@ pub struct Water {
     /// Absorption coefficient a per channel, 1/m, 0 … 10⁴. Default 0.
     #[schema(min_items = 3, max_items = 3)]
     pub absorption_per_m: [f64; 3],
-    /// Scattering coefficient b per channel, 1/m, 0 … 10⁴. Default 0. Beams lose it (c = a + b);
-    /// light scattered into the picture is not simulated, which is warned of; the energy account has the flux.
+    /// Scattering coefficient b per channel, 1/m, 0 … 10⁴. Default 0. Beams lose scattered light (extinction c = a + b). Light
+    /// scattered towards the camera is not simulated: a warning says so, and the energy account has the scattered flux.
     #[schema(min_items = 3, max_items = 3)]
     pub scattering_per_m: [f64; 3],
-    /// How a wave's period follows from its wavelength when `period_s` is not given. Default `finite_depth`.
+    /// How a wave's period follows from its wavelength if `period_s` is not given. Default `finite_depth`.
     pub dispersion: Dispersion,
 }
 
@@ -87,7 +87,7 @@ pub enum Dispersion {
     FiniteDepth,
 }
 
-/// One wave component, told apart by `kind`.
+/// One wave component. Its `kind` selects its type.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Wave {
@@ -109,17 +109,17 @@ impl<'de> Deserialize<'de> for Wave {
 pub struct SineWave {
     /// Always `sine`.
     pub kind: SineKind,
-    /// A, m, 0 … 100.
+    /// Amplitude A, m, 0 … 100.
     pub amplitude_m: f64,
-    /// λ, m, 10⁻³ … 10⁵.
+    /// Wavelength λ, m, 10⁻³ … 10⁵.
     pub wavelength_m: f64,
-    /// θ, degrees from +X towards +Z, −10⁶ … 10⁶. Default 0.
+    /// Direction θ, degrees from +X towards +Z, −10⁶ … 10⁶. Default 0.
     #[serde(default)]
     pub direction_deg: f64,
-    /// φ, degrees, −10⁶ … 10⁶. Default 0.
+    /// Phase φ, degrees, −10⁶ … 10⁶. Default 0.
     #[serde(default)]
     pub phase_deg: f64,
-    /// 2π/ω, s, 10⁻⁶ … 10¹²; absent: from the dispersion relation.
+    /// Period 2π/ω, s, 10⁻⁶ … 10¹². Default: from the dispersion relation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
 }
@@ -128,7 +128,7 @@ pub struct SineWave {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Floor {
-    /// Distance below the water at rest, m, 0 … 11 000.
+    /// Depth below the water at rest, m, 0 … 11 000.
     pub depth_m: f64,
     /// Extent along x and z, m, 10⁻⁶ … 10⁶.
     #[schema(min_items = 2, max_items = 2)]
@@ -147,7 +147,7 @@ fn default_floor_albedo() -> [f64; 3] {
     [0.7, 0.65, 0.5]
 }
 
-/// A light, told apart by `kind`.
+/// A light. Its `kind` selects its type.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Light {
@@ -180,7 +180,7 @@ impl<'de> Deserialize<'de> for Light {
 pub struct Sun {
     /// Always `sun`.
     pub kind: SunKind,
-    /// Height above the horizon e, degrees, −90 … 90; at or below 0 the sun gives no light, and the plan says so.
+    /// Elevation e above the horizon, degrees, −90 … 90. At or below 0 the sun gives no light, and the plan says so.
     pub elevation_deg: f64,
     /// Azimuth a, degrees from +X towards +Z, −10⁶ … 10⁶. Default 0.
     #[serde(default)]
@@ -190,18 +190,18 @@ pub struct Sun {
     pub irradiance_w_m2: [f64; 3],
 }
 
-/// A point that sends light out evenly all around, above or under the water.
+/// A point that emits evenly in all directions, above or under the water.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({ "kind": "point", "position_m": [0.5, 1.1, -0.3], "intensity_w_sr": [60, 50, 38] }))]
 pub struct PointLight {
     /// Always `point`.
     pub kind: PointKind,
-    /// Where it is, m, −10⁶ … 10⁶ each. Whether that is above or under the water is decided by the waves at the moment `time_s`;
-    /// of one under the water the light that goes up to the surface is not followed.
+    /// Position, m, each −10⁶ … 10⁶. The waves at `time_s` decide whether it is above or under the water. Of a light under the
+    /// water, the light that goes up to the surface is not followed.
     #[schema(min_items = 3, max_items = 3)]
     pub position_m: [f64; 3],
-    /// Radiant intensity per channel, W/sr, 0 … 10⁹ (4π times that is the power, W).
+    /// Radiant intensity per channel, W/sr, 0 … 10⁹. The power, W, is 4π times that.
     #[schema(min_items = 3, max_items = 3)]
     pub intensity_w_sr: [f64; 3],
 }
@@ -221,26 +221,27 @@ pub struct Sky {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Object {
-    /// Mesh id (`blake3:…`) from `POST /v1/meshes`; in a scene file also a path relative to the file.
+    /// Mesh id (`blake3:…`) from `POST /v1/meshes`; in a scene file also the path of an OBJ file relative to the scene file.
     pub mesh: String,
     /// Translation, m, −10⁶ … 10⁶. Default (0, 0, 0).
     #[serde(default)]
     #[schema(min_items = 3, max_items = 3)]
     pub translation_m: [f64; 3],
-    /// Rotation as quaternion (x, y, z, w), of length 1 ± 10⁻³ (normalised on reading). Default: none.
+    /// Rotation as a quaternion (x, y, z, w) of length 1 ± 10⁻³, which is normalised on reading. Default (0, 0, 0, 1): no
+    /// rotation.
     #[serde(default = "identity_rotation", deserialize_with = "rotation")]
     #[schema(min_items = 4, max_items = 4)]
     pub rotation: [f64; 4],
     /// Scale: one number or (x, y, z), each 10⁻⁶ … 10⁶. Default 1.
     #[serde(default)]
     pub scale: Scale,
-    /// Diffuse reflectance per channel, 0 … 1; absent: the mesh's materials.
+    /// Diffuse reflectance per channel, 0 … 1. Default: that of the mesh's materials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_items = 3, max_items = 3)]
     pub albedo: Option<[f64; 3]>,
 }
 
-/// The schema's derive takes the bare word `Object` for any JSON object.
+/// The schema's derive macro takes a type called `Object` for any JSON object; hence this alias.
 type MeshInstance = Object;
 
 fn identity_rotation() -> [f64; 4] {
@@ -285,7 +286,7 @@ impl Scale {
     }
 }
 
-/// A camera, told apart by `kind` (default `perspective`).
+/// A camera. Its `kind` selects its type (default `perspective`).
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Camera {
@@ -319,20 +320,20 @@ impl Camera {
     }
 }
 
-/// A pinhole camera; square pixels, the picture's aspect follows from width and height.
+/// A pinhole camera with square pixels. The picture's aspect ratio follows from width and height.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PerspectiveCamera {
-    /// `perspective`, may be left out.
+    /// Always `perspective`; may be omitted.
     #[serde(default)]
     pub kind: PerspectiveKind,
-    /// Eye, m, −10⁶ … 10⁶.
+    /// Position of the eye, m, −10⁶ … 10⁶.
     #[schema(min_items = 3, max_items = 3)]
     pub position_m: [f64; 3],
-    /// The point in the middle of the picture, m, −10⁶ … 10⁶; not the eye.
+    /// The point in the middle of the picture, m, −10⁶ … 10⁶; at least 10⁻⁶ m from `position_m`.
     #[schema(min_items = 3, max_items = 3)]
     pub target_m: [f64; 3],
-    /// Up direction, each component −10⁶ … 10⁶, any length above 0, not along the view. Default (0, 1, 0).
+    /// Up direction of any length above 0, each component −10⁶ … 10⁶; not parallel to the view. Default (0, 1, 0).
     #[serde(default = "default_up")]
     #[schema(min_items = 3, max_items = 3)]
     pub up: [f64; 3],
@@ -350,10 +351,10 @@ pub struct OrthographicCamera {
     /// Middle of the image plane, m, −10⁶ … 10⁶.
     #[schema(min_items = 3, max_items = 3)]
     pub position_m: [f64; 3],
-    /// The point in the middle of the picture, m, −10⁶ … 10⁶; not the position.
+    /// The point in the middle of the picture, m, −10⁶ … 10⁶; at least 10⁻⁶ m from `position_m`.
     #[schema(min_items = 3, max_items = 3)]
     pub target_m: [f64; 3],
-    /// Up direction, each component −10⁶ … 10⁶, any length above 0, not along the view. Default (0, 1, 0).
+    /// Up direction of any length above 0, each component −10⁶ … 10⁶; not parallel to the view. Default (0, 1, 0).
     #[serde(default = "default_up")]
     #[schema(min_items = 3, max_items = 3)]
     pub up: [f64; 3],
@@ -369,7 +370,7 @@ fn default_fov() -> f64 {
     45.0
 }
 
-/// What to make, told apart by `kind`.
+/// What to make. Its `kind` selects its type.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum Output {
@@ -400,12 +401,12 @@ impl<'de> Deserialize<'de> for Output {
 }
 
 impl Output {
-    /// Whether it is a map on a mesh.
+    /// Whether it is an irradiance map of a mesh.
     pub fn is_object_map(&self) -> bool {
         matches!(self, Self::IrradianceMap(map) if matches!(map.receiver, Receiver::Object(_)))
     }
 
-    /// Whether a camera takes a picture.
+    /// Whether it is a view of the camera.
     pub fn is_view(&self) -> bool {
         matches!(self, Self::View(_))
     }
@@ -458,16 +459,17 @@ pub struct ViewOutput {
     )]
     #[schema(minimum = 8, maximum = 16)]
     pub png_bits: u32,
-    /// Exposure in stops relative to the scene's own (see `stats.exposure`), −40 … 40. Default 0. PNG only: EXR stays unexposed.
+    /// Exposure, stops relative to the scene's own exposure (see `stats.exposure`), −40 … 40. Default 0. PNG only: EXR is not
+    /// exposed.
     #[serde(default)]
     pub exposure_ev: f64,
     /// Tone curve of PNG. Default `pbr_neutral`.
     #[serde(default)]
     pub tone_curve: ToneCurve,
-    /// Number type of the EXR channels R G B A, `albedo.*`; the rest is always float. Default `half`.
+    /// Number type of the EXR channels R, G, B, A and `albedo.*`; all others are always float. Default `half`.
     #[serde(default)]
     pub exr_pixel: ExrPixel,
-    /// Layers to compute and write; PNG holds `radiance` only. Default [`radiance`].
+    /// Layers to compute and write. PNG holds `radiance` only. Default [`radiance`].
     #[serde(default = "default_layers")]
     pub layers: Vec<LayerName>,
 }
@@ -506,8 +508,9 @@ fn default_layers() -> Vec<LayerName> {
 
 /// Irradiance on a receiver, by texel.
 ///
-/// On the floor texel (i, j) is centred at x = min + (i + ½)Δ, z = min + (j + ½)Δ, row 0 at min z. On a mesh the map is the
-/// one its level map spans: `quality.level_map_texels` squared, and `min_m`, `max_m`, `width`, `height` are not accepted.
+/// On the floor, texel (i, j) is centred at x = min + (i + ½)Δ, z = min + (j + ½)Δ; row 0 is at min z. On a mesh, the map covers
+/// the same square as the mesh's level map, with `quality.level_map_texels` texels along each side; `min_m`, `max_m`, `width` and
+/// `height` are not accepted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct IrradianceMapOutput {
@@ -515,15 +518,16 @@ pub struct IrradianceMapOutput {
     pub kind: IrradianceMapKind,
     /// `"floor"` or an index into `objects`.
     pub receiver: Receiver,
-    /// Lower corner (x, z) on the floor, m, −10⁶ … 10⁶. Floor only; default: the floor's.
+    /// Lower corner (x, z) of the map on the floor, m, −10⁶ … 10⁶. Floor only. Default: the floor's lower corner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_items = 2, max_items = 2)]
     pub min_m: Option<[f64; 2]>,
-    /// Upper corner (x, z) on the floor, m, −10⁶ … 10⁶, above `min_m`. Floor only; default: the floor's.
+    /// Upper corner (x, z) of the map on the floor, m, −10⁶ … 10⁶; greater than `min_m`. Floor only. Default: the floor's upper
+    /// corner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_items = 2, max_items = 2)]
     pub max_m: Option<[f64; 2]>,
-    /// Texels along x, 1 … 8192. Floor only; default 512.
+    /// Texels along x, 1 … 8192. Floor only. Default 512.
     #[serde(
         default,
         deserialize_with = "optional_integer::<MapSide, _>",
@@ -531,7 +535,7 @@ pub struct IrradianceMapOutput {
     )]
     #[schema(minimum = 1, maximum = 8192)]
     pub width: Option<u32>,
-    /// Texels along z, 1 … 8192. Floor only; default 512.
+    /// Texels along z, 1 … 8192. Floor only. Default 512.
     #[serde(
         default,
         deserialize_with = "optional_integer::<MapSide, _>",
@@ -539,18 +543,19 @@ pub struct IrradianceMapOutput {
     )]
     #[schema(minimum = 1, maximum = 8192)]
     pub height: Option<u32>,
-    /// Index into `lights` of the only sun or point light to count; needed on a mesh when there are several. Default: all.
+    /// Index into `lights`: the map then has the light of this sun or point light only. Required on a mesh if the scene has
+    /// several of them. Default: all.
     #[serde(
         default,
         deserialize_with = "optional_integer::<LightIndex, _>",
         skip_serializing_if = "Option::is_none"
     )]
     pub light: Option<u32>,
-    /// Which surface of the mesh along the light's direction under flat water, nearest first: 0 … `quality.layers` − 1. Mesh only;
-    /// default 0.
+    /// Which surface of the mesh, counted from 0 along the light's direction under flat water, nearest first: 0 …
+    /// `quality.layers` − 1. Mesh only. Default 0.
     #[serde(default, deserialize_with = "integer::<Layer, _>")]
     pub layer: u32,
-    /// Whether skies count too. Default false.
+    /// Whether the light of skies is included. Default false.
     #[serde(default)]
     pub include_sky: bool,
     /// File format. Default `exr`, channels R, G, B as float, W/m².
@@ -563,7 +568,8 @@ pub struct IrradianceMapOutput {
     )]
     #[schema(minimum = 8, maximum = 16)]
     pub png_bits: u32,
-    /// Exposure of PNG in stops relative to the scene's own, −40 … 40. Default 0.
+    /// Exposure, stops relative to the scene's own exposure (see `stats.exposure`), −40 … 40. Default 0. PNG only: EXR is not
+    /// exposed.
     #[serde(default)]
     pub exposure_ev: f64,
     /// Tone curve of PNG. Default `pbr_neutral`.
@@ -598,14 +604,14 @@ impl<'de> Deserialize<'de> for Receiver {
     }
 }
 
-/// How linear layers become a file.
+/// How linear layers are written to a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Encoding {
     /// File format.
     pub format: ImageFormat,
     /// Bits per PNG channel, 8 or 16.
     pub png_bits: u32,
-    /// Stops on top of the scene's own exposure (PNG).
+    /// Stops relative to the scene's own exposure (PNG).
     pub exposure_ev: f64,
     /// Tone curve (PNG).
     pub tone_curve: ToneCurve,
@@ -624,13 +630,13 @@ pub enum ImageFormat {
     Exr,
 }
 
-/// Display curve of PNG, applied to exposed linear light before the sRGB encoding.
+/// Tone curve of PNG, applied to exposed linear light before the sRGB encoding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ToneCurve {
-    /// Clip at 1; how many pixels were clipped is a warning.
+    /// Clip at 1. A warning states the number of clipped pixels.
     Clip,
-    /// Khronos PBR Neutral: identity up to 0.76, then a shoulder that bleaches highlights.
+    /// Khronos PBR Neutral: identity up to 0.76, then a shoulder that desaturates highlights.
     #[default]
     PbrNeutral,
 }
@@ -652,8 +658,8 @@ pub enum ExrPixel {
 pub enum LayerName {
     /// Radiance at the camera, W/(m² sr), and alpha; EXR root R G B A.
     Radiance,
-    /// Distance along the viewing axis to what the ray meets first, the water's surface included, m (the other layers are of what
-    /// lies beneath it); EXR root Z; 10⁹ m and more where nothing is met.
+    /// Distance along the viewing axis to the first surface on the ray, the water's included, m (the other layers are those of
+    /// the surface seen through the water); EXR root Z; 10⁹ m or more if the ray meets nothing.
     Depth,
     /// World normal of the surface seen through the water; EXR N.X N.Y N.Z.
     Normal,
@@ -665,7 +671,7 @@ pub enum LayerName {
     Irradiance,
 }
 
-/// Declares the one-word type of a `kind` field. (`tt` and not `literal`: the schema's derive does not see through the latter.)
+/// Declares the one-word type of a `kind` field. (`tt`, not `literal`: the schema's derive macro cannot read a `literal`.)
 macro_rules! kinds {
     ($($name:ident = $word:tt),+ $(,)?) => {$(
         #[doc = concat!("The word `", $word, "`.")]

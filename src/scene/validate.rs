@@ -1,4 +1,4 @@
-//! Ranges and references: what a scene must fulfil beyond having the right shape.
+//! Checks ranges and references of a scene that has been read.
 
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ pub const MIN_UP_SINE: f64 = 1e-6;
 impl Scene {
     /// Checks every range and reference.
     ///
-    /// Whether the meshes exist is not checked here: see [`super::resolve`].
+    /// Whether the meshes exist is checked in [`super::resolve`].
     ///
     /// # Errors
     ///
@@ -142,7 +142,7 @@ fn objects(findings: &mut Findings, objects: &[Object], limits: &Limits) {
 
 fn rotation(findings: &mut Findings, pointer: String, rotation: [f64; 4]) {
     let length = rotation.iter().map(|v| v * v).sum::<f64>().sqrt();
-    // Written so that a length of NaN is refused too.
+    // Written so that NaN is refused too.
     let is_unit = (length - 1.0).abs() <= ROTATION_LENGTH_TOLERANCE;
     if !is_unit {
         findings.invalid(
@@ -175,7 +175,7 @@ fn camera(findings: &mut Findings, camera: &Camera) {
     if view.length() < MIN_VIEW_DISTANCE_M {
         findings.invalid(
             "/camera/target_m",
-            "the target is where the camera is",
+            "the target is at the position of the camera",
             format!(
                 "a point at least {} m from `position_m`",
                 number(MIN_VIEW_DISTANCE_M)
@@ -183,11 +183,11 @@ fn camera(findings: &mut Findings, camera: &Camera) {
         );
         return;
     }
-    // Divided by its largest component, an up direction of any length has a length that neither vanishes nor overflows.
+    // Divide by the largest component, so that the length neither underflows nor overflows.
     let up = DVec3::from(up);
     let up = up / up.abs().max_element();
     if !up.is_finite() {
-        let detail = "the up direction has no length";
+        let detail = "the up direction has length 0";
         findings.invalid("/camera/up", detail, "a direction, such as [0, 1, 0]");
         return;
     }

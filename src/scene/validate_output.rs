@@ -1,4 +1,4 @@
-//! Whether what is asked for can be made from the rest of the scene.
+//! Checks that the requested output can be made from the rest of the scene.
 
 use super::findings::Findings;
 use super::ranges;
@@ -28,7 +28,7 @@ fn view(findings: &mut Findings, scene: &Scene, output: &ViewOutput, limits: &Li
     if scene.camera.is_none() {
         findings.invalid(
             "/camera",
-            "missing field `camera`: a view is taken from somewhere",
+            "missing field `camera`: a view needs one",
             "a camera with `position_m` and `target_m`, or another `output.kind`",
         );
     }
@@ -45,7 +45,7 @@ fn view(findings: &mut Findings, scene: &Scene, output: &ViewOutput, limits: &Li
 
 fn layers(findings: &mut Findings, output: &ViewOutput) {
     if output.layers.is_empty() {
-        let detail = "no layer is asked for";
+        let detail = "no layer is requested";
         findings.invalid("/output/layers", detail, "at least one layer");
     }
     for (index, layer) in output.layers.iter().enumerate() {
@@ -59,14 +59,14 @@ fn layers(findings: &mut Findings, output: &ViewOutput) {
                 "`radiance` alone, or `output.format` = `exr`",
             );
         }
-        // A long list consists of repetitions.
+        // A longer list only repeats layers.
         if index > 2 * LAYER_COUNT {
             break;
         }
     }
 }
 
-/// How many layers there are to name.
+/// The number of layers that exist.
 const LAYER_COUNT: usize = 6;
 
 fn pixels(findings: &mut Findings, pointer: &str, [width, height]: [u32; 2], limits: &Limits) {
@@ -80,7 +80,7 @@ fn pixels(findings: &mut Findings, pointer: &str, [width, height]: [u32; 2], lim
     }
 }
 
-/// Number and indices, in words, of the lights that have maps: suns and point lights.
+/// The number of lights that have maps (suns and point lights), and their indices for messages.
 fn mapped_lights(scene: &Scene) -> (usize, String) {
     let mapped: Vec<String> = scene
         .lights
@@ -90,7 +90,7 @@ fn mapped_lights(scene: &Scene) -> (usize, String) {
         .map(|(index, _)| index.to_string())
         .collect();
     let accepted = match mapped.len() {
-        0 => "no index: the scene has no sun and no point light".to_owned(),
+        0 => "no `light` field: the scene has no sun and no point light".to_owned(),
         _ => format!(
             "the index of a sun or point light: {}",
             quoted(&mapped.join(", "))
@@ -128,7 +128,7 @@ fn layer(findings: &mut Findings, scene: &Scene, output: &IrradianceMapOutput) {
     let layers = scene.quality.layers;
     let accepted = match output.receiver {
         Receiver::Floor(_) if output.layer > 0 => {
-            "0 or nothing: the floor has one surface".to_owned()
+            "0 or no `layer` field: the floor has one surface".to_owned()
         }
         Receiver::Object(_) if output.layer >= layers => format!(
             "below `quality.layers`, which is {layers}: 0 … {}",
@@ -169,7 +169,7 @@ fn mesh_map(
         findings.invalid(
             format!("/output/{field}"),
             format!("`{field}` is for the floor only"),
-            "nothing: the map of a mesh spans its level map, `quality.level_map_texels` squared",
+            "no such field: the map of a mesh has the texels of its level map, `quality.level_map_texels` along each side",
         );
     }
     let side = scene.quality.level_map_texels;
@@ -214,7 +214,7 @@ fn window(findings: &mut Findings, floor: &Floor, output: &IrradianceMapOutput) 
             is_sound &= findings.numbers(pointer, &corner, &ranges::COORDINATE);
         }
     }
-    // The one that is given is the one to point at.
+    // Report the corner that the scene gives.
     let given = if output.max_m.is_some() {
         "max_m"
     } else {
@@ -233,7 +233,7 @@ fn window(findings: &mut Findings, floor: &Floor, output: &IrradianceMapOutput) 
             findings.invalid(
                 format!("/output/{given}/{axis}"),
                 format!(
-                    "along {name} the window reaches from {} to {} m",
+                    "along {name} the map reaches from {} to {} m",
                     min[axis], max[axis]
                 ),
                 format!(
@@ -244,7 +244,7 @@ fn window(findings: &mut Findings, floor: &Floor, output: &IrradianceMapOutput) 
             is_sound = false;
         }
     }
-    // A hair of rounding is forgiven; a texel beside the floor could only show light where nothing is.
+    // Rounding errors are tolerated. A texel beside the floor would show light where there is no surface.
     let hair = |axis: usize| 1e-9 * (floor_max[axis] - floor_min[axis]);
     let leaves = |axis: usize| {
         min[axis] < floor_min[axis] - hair(axis) || max[axis] > floor_max[axis] + hair(axis)
@@ -252,10 +252,8 @@ fn window(findings: &mut Findings, floor: &Floor, output: &IrradianceMapOutput) 
     if is_sound && (leaves(0) || leaves(1)) {
         findings.invalid(
             format!("/output/{given}"),
-            format!("the window from {min:?} to {max:?} m leaves the floor"),
-            format!(
-                "a window within the floor, which reaches from {floor_min:?} to {floor_max:?} m"
-            ),
+            format!("the map from {min:?} to {max:?} m extends beyond the floor"),
+            format!("a map within the floor, which reaches from {floor_min:?} to {floor_max:?} m"),
         );
     }
 }

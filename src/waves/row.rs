@@ -1,4 +1,5 @@
-//! The surface along rows of evenly spaced points, a block at a time: plain arrays, so that the compiler uses vector instructions.
+//! The surface along rows of evenly spaced points, a block at a time. Blocks are plain arrays, so that the compiler uses vector
+//! instructions.
 
 use glam::DVec2;
 
@@ -36,7 +37,7 @@ pub struct Rows {
     pub(super) kind: RowKind,
 }
 
-/// What the rows run over.
+/// The kind of surface.
 #[derive(Clone, Debug)]
 pub(super) enum RowKind {
     /// A sum of sines.

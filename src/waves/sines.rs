@@ -1,7 +1,7 @@
 //! Water as a sum of sines.
 //!
-//! Phases are kept in turns and reduced in f64, so t = 10⁶ s is as good as t = 0, and a surface can be re-centred anywhere
-//! before its figures become f32.
+//! Phases are stored in turns and reduced in f64, so t = 10⁶ s is as accurate as t = 0, and a surface can be re-centred anywhere
+//! before its values become f32.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ use super::surface::{Curvature, SurfacePoint};
 use crate::physics::{dispersion, turns::sin_cos_turns};
 use crate::scene::{Dispersion, Scene, Wave};
 
-/// One sine at one moment: h = A sin(2π (x·f_x + z·f_z + p)).
+/// One sine at one time: h = A sin(2π (x·f_x + z·f_z + p)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sine {
     /// A, m.
@@ -23,7 +23,7 @@ struct Sine {
     phase_turns: f64,
 }
 
-/// The sines, added up.
+/// A sum of sines.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sines {
     components: Vec<Sine>,
@@ -136,7 +136,7 @@ impl Sines {
             .sum()
     }
 
-    /// The largest that derivatives of this order along any direction can add up to, 1/m^(order − 1): Σ A k^order.
+    /// Upper bound of the derivative of this order along any direction, 1/m^(order − 1): Σ A k^order.
     pub(super) fn max_derivative(&self, order: i32) -> f64 {
         self.components
             .iter()
@@ -153,7 +153,7 @@ impl Sines {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The slope that the components can add up to and that is largest along the unit vector `u`.
+    /// The slope that is largest along the unit vector `u`, among those that the components can add up to.
     pub(super) fn rim_slope(&self, u: DVec2) -> DVec2 {
         self.components
             .iter()
@@ -231,7 +231,8 @@ pub(super) struct SineRows {
 }
 
 impl SineRows {
-    /// sin(α + iδ) from the sine and cosine of α, exact in every block, and of iδ, from the table.
+    /// Computes sin(α + iδ) from the sine and cosine of α, which are exact in every block, and those of iδ, which are in the
+    /// table.
     pub(super) fn evaluate(&self, start_m: DVec2, points: &mut RowPoints) {
         points.height_m.fill(0.0);
         points.slope_x.fill(0.0);

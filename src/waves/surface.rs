@@ -1,4 +1,4 @@
-//! The water surface at one moment, whatever it is made up of.
+//! The water surface at one time, for all kinds of water.
 
 use std::f64::consts::TAU;
 
@@ -42,15 +42,16 @@ impl Curvature {
     }
 }
 
-/// The water surface at one moment, heights relative to the water at rest, (x, z) relative to an origin on it.
+/// The water surface at one time. Heights are relative to the water at rest, (x, z) to an origin on it.
 ///
-/// The bounds hold for every height and slope that [`Self::at`] and [`Self::rows`] give, here and in any recentred copy.
+/// The bounds hold for every height and slope that [`Self::at`] and [`Self::rows`] return, for this surface and for any recentred
+/// copy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     kind: Kind,
 }
 
-/// What the surface is made up of.
+/// The kind of water.
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
     /// A sum of sines; flat water has none.
@@ -80,15 +81,15 @@ impl Surface {
         }
     }
 
-    /// Height, slope and curvature at (x, z), m. Height and slope are those of [`Self::at`] but for rounding.
+    /// Height, slope and curvature at (x, z), m. Height and slope equal those of [`Self::at`] except for rounding.
     pub fn curved_at(&self, x_m: f64, z_m: f64) -> (SurfacePoint, Curvature) {
         match &self.kind {
             Kind::Sines(sines) => sines.curved_at(x_m, z_m),
         }
     }
 
-    /// Height and slope along rows of points `step_m`, (x, z), apart. Much faster than [`Self::at`] for many points, and the
-    /// same but for rounding.
+    /// Height and slope along rows of points that are `step_m`, (x, z), apart. Much faster than [`Self::at`] for many points, and
+    /// equal except for rounding.
     pub fn rows(&self, step_m: DVec2) -> Rows {
         let kind = match &self.kind {
             Kind::Sines(sines) => RowKind::Sines(sines.rows(step_m)),
@@ -96,10 +97,10 @@ impl Surface {
         Rows { kind }
     }
 
-    /// Whether the bounds below and the shortest wave are others at other times; where they are not, they are the same to the bit.
+    /// Whether the following bounds and the shortest wave depend on time. If not, they are equal to the bit at all times.
     pub fn bounds_change_with_time(&self) -> bool {
         match &self.kind {
-            // Phases move, amplitudes and wavelengths do not.
+            // Only phases change with time, not amplitudes and wavelengths.
             Kind::Sines(_) => false,
         }
     }
@@ -118,7 +119,7 @@ impl Surface {
         }
     }
 
-    /// Upper bound of the steepness in any direction; 0 of flat water only.
+    /// Upper bound of the slope in any direction; 0 for flat water only.
     pub fn max_slope(&self) -> f64 {
         match &self.kind {
             Kind::Sines(sines) => sines.max_slope(),
@@ -139,8 +140,8 @@ impl Surface {
         }
     }
 
-    /// The extreme tilts: for each of `directions` evenly spaced directions, from x towards z, a slope that no slope of the
-    /// surface exceeds along it. Empty for flat water.
+    /// The extreme slopes: for each of `directions` evenly spaced directions, from x towards z, a slope that no slope of the
+    /// surface exceeds along that direction. Empty for flat water.
     pub fn rim_slopes(&self, directions: u32) -> Vec<DVec2> {
         if self.max_slope() == 0.0 {
             return Vec::new();
@@ -162,7 +163,7 @@ impl Surface {
         }
     }
 
-    /// What kind of water it is, for sentences such as "the sun shines into …".
+    /// The kind of water in words, for sentences such as "the sun shines into …".
     pub fn description(&self) -> String {
         if self.max_slope() == 0.0 {
             return "flat water".to_owned();
@@ -172,14 +173,14 @@ impl Surface {
         }
     }
 
-    /// Number of [`Self::gpu_elements`]; also what the time to evaluate a point on the GPU grows with.
+    /// Number of [`Self::gpu_elements`]. The time to evaluate a point on the GPU grows with it.
     pub fn gpu_element_count(&self) -> usize {
         match &self.kind {
             Kind::Sines(sines) => sines.gpu_element_count(),
         }
     }
 
-    /// What the GPU evaluates the surface from, 16 bytes each, laid out as the shaders' `Wave`.
+    /// The data from which the GPU evaluates the surface: elements of 16 bytes, laid out as the shaders' `Wave`.
     pub fn gpu_elements(&self) -> Vec<[f32; 4]> {
         match &self.kind {
             Kind::Sines(sines) => sines.gpu_elements(),

@@ -1,4 +1,4 @@
-//! Dials: what may be swept, and how it is written.
+//! Dials of a sweep: which are accepted, and their syntax.
 
 use caustica::config::Limits;
 use caustica::lab::study::dial::{Dial, DialError, Setting, dials, with_dials};
@@ -27,7 +27,7 @@ fn ranges_double_or_count() {
 }
 
 #[test]
-fn what_is_no_dial_is_refused_with_what_would_be() {
+fn unknown_dials_are_refused_with_the_accepted_ones() {
     let unknown = Dial::parse("cells=1..4").unwrap_err().to_string();
     assert!(
         unknown.contains("`cells` is no dial") && unknown.contains("water_cells"),

@@ -330,7 +330,7 @@ fn sweep(dial: &str, points: &[(serde_json::Value, f64, f64)]) -> Sweep {
 }
 
 #[test]
-fn the_order_leaves_out_what_the_truth_hides() {
+fn the_order_leaves_out_errors_below_that_of_the_truth() {
     let law = |n: f64| 40.0 * n.powi(-2);
     let floor = 2e-4;
     let sweep = sweep(

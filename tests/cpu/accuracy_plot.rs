@@ -1,4 +1,4 @@
-//! Plots: they hold what they should, in both formats, and refuse what cannot be drawn.
+//! Plots: their contents in both formats, and the refusal of what cannot be drawn.
 
 use caustica::lab::study::fit_orders;
 use caustica::lab::study::plot::{Plot, PlotError, convergence, error_against_time};
@@ -152,7 +152,7 @@ fn a_single_setting_can_be_drawn() {
 }
 
 #[test]
-fn an_error_of_zero_is_moved_and_said_so() {
+fn an_error_of_zero_is_moved_and_reported() {
     let settings = [
         (json!(1), 0.02, 5.0),
         (json!(2), 0.0, 9.0),

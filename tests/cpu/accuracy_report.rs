@@ -1,4 +1,4 @@
-//! Reports: nothing is lost, nothing is garbled, files are there as a whole or not at all.
+//! Reports: complete, correctly encoded, and written atomically.
 
 use std::fs;
 use std::path::PathBuf;

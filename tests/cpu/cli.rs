@@ -1,4 +1,4 @@
-//! The command line: what may be typed, frame ranges and file patterns, and what is printed.
+//! The command line: syntax, frame ranges, file patterns, and printed texts.
 
 use std::path::Path;
 

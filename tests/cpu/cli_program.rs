@@ -1,4 +1,4 @@
-//! The program itself: exit codes, what it says on stderr, and health of a service that is not ours.
+//! The program itself: exit codes, messages on stderr, and `health` of a foreign service.
 
 use std::io::{Read, Write};
 use std::net::TcpListener;
@@ -164,7 +164,10 @@ fn an_animation_whose_files_are_there_needs_no_gpu() {
     ]);
     let said = String::from_utf8(out.stderr).unwrap();
     assert_eq!(out.status.code(), Some(0), "{said}");
-    assert!(said.contains("0 frames rendered, 3 were there"), "{said}");
+    assert!(
+        said.contains("0 frames rendered, 3 skipped because their files exist"),
+        "{said}"
+    );
 }
 
 /// A service that gives one answer, and what it was asked.

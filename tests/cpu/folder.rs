@@ -1,4 +1,4 @@
-//! A directory of its own for a test, and the small files that tests of the command line put there.
+//! A temporary directory for a test, and the small files that tests of the command line write there.
 
 use std::fs;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! What fuzzing has found, and what it begins with: the checks of the fuzz targets hold for all of it.
+//! Finds and seeds of fuzzing: the checks of the fuzz targets hold for all of them.
 
 use std::path::Path;
 

@@ -101,7 +101,7 @@ fn every_layer_comes_back_under_its_names() {
 
 /// Read with the library's plain RGBA interface, as a stranger would.
 #[test]
-fn strangers_see_the_picture_upright() {
+fn other_readers_see_the_picture_upright() {
     let (width, height) = (4_usize, 3_usize);
     let frame = frame(
         4,
@@ -145,7 +145,7 @@ fn an_irradiance_map_fills_the_root_with_floats() {
             70_000.1 + (x + 3 * y) as f32 + c as f32 * 0.1
         }),
     );
-    // Even if half is asked for.
+    // Even if half is requested.
     let encoded = write(&frame, ExrPixel::Half);
     assert_eq!(encoded.warnings, vec![]);
     let read = decode_exr(&encoded.bytes).expect("an EXR");
@@ -163,7 +163,7 @@ fn an_irradiance_map_fills_the_root_with_floats() {
 }
 
 #[test]
-fn what_half_cannot_hold_is_clamped_and_said() {
+fn values_beyond_half_are_clamped_and_reported() {
     let values = [70_000.0, -1e9, 65_504.0, 1e-9, 6e-8, 0.0];
     let frame = frame(
         6,

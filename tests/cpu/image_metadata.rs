@@ -1,4 +1,4 @@
-//! What a file says about its making: everything reproducible, nothing else.
+//! Metadata of image files: everything reproducible, nothing else.
 
 use caustica::image::Metadata;
 use caustica::stats::{AbsentPass, PassStats, Stats, Warning};

@@ -120,7 +120,7 @@ fn irradiance_maps_are_shown_as_white_diffuse_surfaces() {
 }
 
 #[test]
-fn what_is_lost_is_said() {
+fn losses_are_reported() {
     let values = [[2.0, 0.0, 0.0], [1.0, 1.0, 1.0], [-0.5, 0.5, 0.5]];
     let mut frame = frame(
         3,
@@ -163,7 +163,7 @@ fn what_is_lost_is_said() {
 }
 
 #[test]
-fn values_that_are_no_numbers_are_refused_with_their_place() {
+fn values_that_are_not_numbers_are_refused_with_their_place() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let frame = frame(
             4,

@@ -1,4 +1,4 @@
-//! Frames made by hand for the tests of image files.
+//! Hand-made frames for the tests of image files.
 
 use std::collections::BTreeMap;
 

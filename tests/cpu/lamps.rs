@@ -1,4 +1,4 @@
-//! Point lights without a GPU: what a scene may say, where their rays go, and the float64 truth against the closed form.
+//! Point lights without a GPU: validation, ray directions, and the float64 reference against the closed form.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::Limits;
@@ -80,7 +80,7 @@ fn facts(scene: Value) -> SceneFacts {
 }
 
 #[test]
-fn the_waves_at_the_moment_tell_whether_a_light_is_under_water() {
+fn the_waves_at_that_time_decide_whether_a_light_is_under_water() {
     // A crest of 3 cm stands over the light at 2 cm; half a period later there is a trough.
     let at = |time_s: f64, y: f64| {
         let water = json!({ "waves": [{ "kind": "sine", "amplitude_m": 0.03, "wavelength_m": 1,
@@ -100,7 +100,7 @@ fn the_waves_at_the_moment_tell_whether_a_light_is_under_water() {
 }
 
 #[test]
-fn what_is_not_followed_is_said() {
+fn light_that_is_not_followed_is_reported() {
     let codes = |scene: Value| -> Vec<String> {
         let warnings = facts(scene).warnings;
         assert!(
@@ -147,7 +147,7 @@ fn exposure_is_a_number_wherever_the_light_is() {
 }
 
 #[test]
-fn level_maps_look_along_the_refracted_ray_to_the_objects_middle() {
+fn level_maps_are_drawn_along_the_refracted_ray_to_the_objects_middle() {
     for (lamp, object) in [
         ([0.7, 1.1, -0.4], [0.0, -1.0, 0.2]),
         ([3.0, 0.05, 0.0], [-0.5, -1.5, 0.0]),

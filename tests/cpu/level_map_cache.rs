@@ -1,4 +1,4 @@
-//! The level-map cache and its arena: who stays, who goes, and that ranges never overlap.
+//! The level-map cache and its arena: which maps are kept or evicted, and that ranges never overlap.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,7 +52,7 @@ fn a_further_layer_takes_a_depth_and_a_normal_per_texel() {
 }
 
 #[test]
-fn what_is_there_is_a_hit() {
+fn a_cached_map_is_a_hit() {
     let mut cache = LevelMapCache::new(4 * SMALL);
     let a = key("a", 16);
     assert_eq!(frame(&mut cache, &[&a]), std::slice::from_ref(&a));
@@ -78,7 +78,7 @@ fn other_meshes_directions_and_sizes_are_other_maps() {
 }
 
 #[test]
-fn the_one_used_longest_ago_goes_first() {
+fn the_least_recently_used_map_is_evicted_first() {
     let mut cache = LevelMapCache::new(2 * SMALL);
     let (a, b, c) = (key("a", 16), key("b", 16), key("c", 16));
     for used in [&a, &b, &a, &c] {
@@ -134,7 +134,7 @@ fn a_map_that_is_needed_twice_is_built_once() {
     assert!(frame(&mut cache, &[&b, &b]).is_empty());
     assert_eq!(counts(&cache), (1, 2, 0));
     assert_eq!(cache.stats().bytes, 2 * SMALL);
-    // No range has been lost on the way.
+    // No range has been lost.
     cache.forget_mesh("a");
     cache.forget_mesh("b");
     let whole = [key("c", 16), key("d", 16)];
@@ -169,7 +169,7 @@ fn pieces_do_not_keep_a_map_out_that_fits() {
     let kept = &small[4];
     let before = counts(&cache);
     let missing = cache.reserve(&[kept, &large]).unwrap();
-    // What the frame had already is built again, and the frame is told.
+    // Maps that the frame had already are built again, and the frame gets to know.
     assert_eq!(missing.len(), 2);
     assert!(missing.contains(kept) && missing.contains(&large));
     assert!(!cache.contains(kept) && !cache.contains(&large));
@@ -177,7 +177,7 @@ fn pieces_do_not_keep_a_map_out_that_fits() {
         cache.built(key);
     }
     assert!(cache.contains(kept) && cache.contains(&large));
-    // Eight made way, the kept one among them; it was no hit.
+    // Eight were evicted, the kept one among them; it was not a hit.
     assert_eq!(counts(&cache), (before.0, before.1 + 2, before.2 + 8));
     assert_eq!(cache.stats().bytes, SMALL + large.bytes());
     // The next frame finds both.
@@ -191,7 +191,7 @@ fn a_frame_that_moves_what_it_had_counts_every_map_once() {
     let (mut cache, small) = fragmented(&large);
     let new = key("new", 16);
     let before = counts(&cache);
-    // `new` finds room at once; that it is moved again when `large` does not is nobody's business.
+    // `new` finds room at once. That it is moved again when `large` finds none is not visible outside.
     let missing = frame(&mut cache, &[&new, &small[4], &large]);
     assert_eq!(missing.len(), 3);
     assert_eq!(counts(&cache), (before.0, before.1 + 3, before.2 + 8));
@@ -313,7 +313,7 @@ fn the_arena_agrees_with_a_plain_model() {
     assert_eq!(arena, Arena::new(SIZE));
 }
 
-/// A cache as it should be, the plain way: which maps are there, and when each was used.
+/// A simple model of the cache: which maps it has, and when each was used.
 #[derive(Default)]
 struct Model {
     used: BTreeMap<LevelMapKey, u64>,
@@ -322,7 +322,7 @@ struct Model {
 }
 
 #[test]
-fn the_cache_holds_what_was_asked_for_whatever_went_before() {
+fn the_cache_has_the_requested_maps_after_any_history() {
     const BUDGET: u64 = 200_000;
     let mut random = Random(3);
     let mut cache = LevelMapCache::new(BUDGET);
@@ -382,7 +382,7 @@ fn the_cache_holds_what_was_asked_for_whatever_went_before() {
         assert_eq!(stats.entries, ranges.len() as u64, "round {round}");
         assert_eq!(stats.bytes, ranges.iter().map(|r| r.1).sum::<u64>());
         assert_eq!((stats.hits, stats.misses), (model.hits, model.misses));
-        // Every map that was built is there, or has made way.
+        // Every map that was built is present or was evicted.
         assert_eq!(stats.misses, stats.entries + stats.evictions);
     }
     let (hits, misses, evictions) = counts(&cache);

@@ -80,8 +80,8 @@ fn brute_force(
     let mut best: Option<TriangleHit> = None;
     for (index, triangle) in triangles.iter().enumerate() {
         let [a, b, c] = triangle.positions_m;
-        // A triangle too small to be told from a point at this distance: the walk has boxes to keep it from misjudging
-        // such a one, here it has to be near the ray.
+        // A triangle too small to be distinguished from a point at this distance: the traversal's boxes protect it from
+        // misjudging such a one, here it has to be near the ray.
         let along = (a - origin).project_onto(direction);
         let far_off = (a - origin - along).length();
         if far_off > 1.01 * (b - a).length().max((c - a).length()) + 1e-4 {

@@ -1,4 +1,4 @@
-//! OBJ and MTL in: what is read, what is mended and said, what is refused and how.
+//! Reading OBJ and MTL: what is accepted, what is repaired with a warning, what is refused and how.
 
 use caustica::config::Limits;
 use caustica::mesh::{DEFAULT_ALBEDO, Mesh, MeshError, obj};
@@ -127,7 +127,7 @@ fn polygons_become_fans() {
 }
 
 #[test]
-fn lines_and_points_are_no_triangles() {
+fn lines_and_points_are_not_triangles() {
     let mesh = good(&format!(
         "{TRIANGLE}l 1 2 3\np 1\ncurv2 1 2\nf 1 2\nf 1\nf\n"
     ));
@@ -177,7 +177,7 @@ fn degenerate_and_doubled_triangles_are_left_out() {
 }
 
 #[test]
-fn thin_triangles_are_no_degenerate_ones() {
+fn thin_triangles_are_not_degenerate() {
     let mesh = good("v 0 0 0\nv 1000 0 0\nv 500 1e-5 0\nf 1 2 3\n");
     assert_eq!(mesh.triangles.len(), 1);
     assert_eq!(mesh.triangles[0].normals, [Vec3::Z; 3]);
@@ -188,7 +188,7 @@ fn thin_triangles_are_no_degenerate_ones() {
 }
 
 #[test]
-fn bad_topology_is_kept_and_said() {
+fn bad_topology_is_kept_and_reported() {
     let mesh = good(&format!("{TETRAHEDRON}v 0 -1 0\nf 1 2 5\nf 1 3 4\n"));
     assert_eq!(mesh.triangles.len(), 6);
     warned(&mesh, "mesh_non_manifold", "4 edges");
@@ -249,7 +249,7 @@ fn a_library_path_is_never_opened() {
 }
 
 #[test]
-fn missing_and_useless_materials_are_said() {
+fn missing_and_unused_materials_are_reported() {
     warned(&good(PAINTED), "mesh_missing_material", "`paint.mtl`");
     let unnamed = PAINTED.replace("mtllib paint.mtl\n", "");
     warned(&good(&unnamed), "mesh_missing_material", "`blue`, `red`");
@@ -275,7 +275,7 @@ fn missing_and_useless_materials_are_said() {
 }
 
 #[test]
-fn reflectances_are_clamped_and_said() {
+fn reflectances_are_clamped_and_reported() {
     let mesh = read_with(
         PAINTED,
         "newmtl red\nKd 1.5 -1 0.25\nnewmtl blue\nKd nan inf -inf\n",
@@ -459,7 +459,7 @@ fn syntax_errors_name_the_line() {
 }
 
 #[test]
-fn ids_tell_uploads_apart() {
+fn different_uploads_have_different_ids() {
     assert_eq!(
         obj::id(TRIANGLE.as_bytes(), None),
         format!("blake3:{}", blake3::hash(TRIANGLE.as_bytes()).to_hex())

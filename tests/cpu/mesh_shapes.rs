@@ -1,4 +1,4 @@
-//! The catalogue of shapes: each is what it says of itself, whole, outside out, and the same on every machine.
+//! The catalogue of shapes: each matches its description, is closed, faces outward, and is the same on every machine.
 
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -209,7 +209,7 @@ fn the_table_of_the_module_is_the_catalogue() {
 }
 
 #[test]
-fn there_is_nothing_to_mend() {
+fn valid_meshes_are_not_repaired() {
     for (shape, mesh) in &*MESHES {
         assert_eq!(mesh.triangles.len(), shape.triangles, "{}", shape.name);
         let warnings: Vec<(&str, &str)> = mesh

@@ -1,4 +1,4 @@
-//! Methods: their dials, what a scene may say of them, and that nothing else in the program or its papers names them by hand.
+//! Methods: their dials, their choice in a scene, and that no other source file or document lists them by hand.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -111,7 +111,7 @@ fn numbers_are_checked_against_their_range() {
 }
 
 #[test]
-fn what_is_wrong_with_a_method_is_told_at_its_place() {
+fn errors_of_a_method_are_reported_at_their_place() {
     let cases = [
         (json!("magic"), "/quality/method", "unknown method `magic`"),
         (
@@ -186,7 +186,7 @@ fn what_is_wrong_with_a_method_is_told_at_its_place() {
 }
 
 #[test]
-fn what_is_no_choice_is_refused_by_the_reading() {
+fn values_that_are_not_a_choice_are_refused_on_reading() {
     for (method, pointer) in [
         (json!(3), "/quality/method"),
         (json!(null), "/quality/method"),
@@ -215,12 +215,12 @@ fn what_is_no_choice_is_refused_by_the_reading() {
 
 /// The fields that were in `quality` before methods had dials of their own.
 #[test]
-fn fields_of_before_say_what_to_write_instead() {
+fn removed_fields_report_what_to_write_instead() {
     for (field, value, instead) in [
         (
             "placement",
             json!("planes"),
-            "`method` with the word that `placement` had",
+            "`method` with the value that `placement` had",
         ),
         (
             "planes",
@@ -240,7 +240,7 @@ fn fields_of_before_say_what_to_write_instead() {
         assert_eq!(issue.pointer, format!("/quality/{field}"));
         assert!(issue.accepted.starts_with(instead), "{issue}");
     }
-    // A slip of the pen is told as one, there and elsewhere.
+    // A misspelt name is reported as such, there and elsewhere.
     for scene in [
         json!({ "quality": { "water_cell": 3 } }),
         json!({ "floor": { "placement": 3 } }),

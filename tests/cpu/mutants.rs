@@ -1,4 +1,4 @@
-//! The plants of `make mutants` fit the sources, the tests and the hard cases as they are.
+//! The planted errors of `make mutants` match the present sources, tests and hard cases.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn every_plant_stands_in_its_file_once_and_changes_it() {
         assert_eq!(count, 1, "{} in {}", plant.from, plant.file);
         assert_ne!(plant.from, plant.to, "{}", plant.what);
     }
-    // Two plants of one description could not be told apart.
+    // Two planted errors with the same description could not be distinguished.
     let in_shaders = shader_plants::ALL.iter().map(|plant| plant.what);
     let mut names: Vec<&str> = plants::ALL
         .iter()

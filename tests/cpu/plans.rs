@@ -1,4 +1,4 @@
-//! Plans: a snapshot for every scene of the project, and nothing in them that a scene does not call for.
+//! Plans: a snapshot for every scene of the project, and no pass that a scene does not need.
 
 use std::path::PathBuf;
 
@@ -231,7 +231,7 @@ fn every_pass_is_in_or_out_with_a_reason() {
         let listed = passes.iter().filter(|pass| is_in(pass));
         assert!(listed.map(|pass| pass.name).eq(names(&plan)), "{name}");
     }
-    // Both ways to be out were looked at.
+    // Both reasons for absence were covered.
     assert!(refused > 0 && unread > 0, "{refused}, {unread}");
 }
 
@@ -514,7 +514,7 @@ fn the_peak_counts_shared_memory_once() {
 }
 
 #[test]
-fn a_pass_that_nobody_feeds_is_an_error() {
+fn a_pass_without_its_source_is_an_error() {
     let facts = methods::facts(&scene_files::scene(pool())).unwrap();
     for gone in ["surface", "camera_hits", "hits"] {
         let mut list = default_passes();

@@ -1,4 +1,4 @@
-//! Scenes as they go to the GPU thread: facts and warnings, and what of them is taken over to another moment.
+//! Prepared scenes: facts and warnings, and which of them are reused for another time.
 
 use caustica::config::Limits;
 use caustica::facts::SceneFacts;
@@ -46,7 +46,7 @@ fn moved(resolved: &ResolvedScene, time_s: f64) -> ResolvedScene {
     moved
 }
 
-/// Goes from moment to moment, and compares each with the same made anew; gives the facts on the way.
+/// Goes from one time to the next, and compares each with the same prepared anew; returns all facts.
 fn goes_through(name: &str, resolved: &ResolvedScene, times_s: &[f64]) -> Vec<SceneFacts> {
     let mut last = Prepared::new(resolved.clone()).unwrap();
     let mut all = vec![last.facts().clone()];
@@ -135,7 +135,7 @@ fn warnings_are_those_of_the_dials_that_are_rendered() {
 }
 
 #[test]
-fn what_cannot_be_rendered_cannot_be_prepared() {
+fn scenes_that_cannot_be_rendered_cannot_be_prepared() {
     // One more light in the air than the camera has room for; half a period earlier the waves are over it.
     let lamp = |x_m: f64, y_m: f64| json!({ "kind": "point", "position_m": [x_m, y_m, 0], "intensity_w_sr": [1, 1, 1] });
     let mut lights = vec![lamp(0.0, 1.0); 64];

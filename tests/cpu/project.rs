@@ -1,4 +1,4 @@
-//! Files that name each other: Makefile, Dockerfile, scripts, manifest, README.
+//! Consistency of files that refer to each other: Makefile, Dockerfile, scripts, manifest, README.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

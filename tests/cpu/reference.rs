@@ -1,4 +1,4 @@
-//! The float64 truth against single rays and against itself.
+//! The float64 reference against single rays and against itself.
 
 use caustica::accuracy::metrics::{relative_l1, total_flux_bias};
 use caustica::physics::fresnel::fresnel_transmittance;

@@ -1,4 +1,4 @@
-//! The float64 truth where a formula knows it too.
+//! The float64 reference against closed forms.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::physics::fresnel::fresnel_transmittance;

@@ -1,4 +1,4 @@
-//! What the float64 truth refuses, and how it says so.
+//! What the float64 reference refuses, and the errors it returns.
 
 use caustica::reference::{ReferenceError, ReferenceSettings, irradiance_map};
 use caustica::scene::{IrradianceMapOutput, Output, ResolvedScene, Scene, Wave};

@@ -1,5 +1,5 @@
-//! The truth about point lights: almost on the water, in views, and in maps on objects; against closed forms, against directions from
-//! the light, and against itself.
+//! The reference for point lights: almost on the water, in views, and in maps on objects; against closed forms, against
+//! directions from the light, and against itself.
 
 use std::f64::consts::TAU;
 
@@ -271,7 +271,7 @@ fn a_tilted_plate_follows_the_cosine() {
     }
 }
 
-/// Two engines that share no way of finding light: the search from each square, and plain rays counted on the floor.
+/// Two independent engines: the search from each square, and plain rays counted on the floor.
 #[test]
 fn points_on_the_floor_agree_with_the_map_of_the_floor() {
     let near_m = wave_height_m(0.1, 0.05) + 1e-3;
@@ -373,7 +373,7 @@ fn suns_and_lamps_add_up() {
 }
 
 #[test]
-fn a_dry_table_sees_the_lamp_in_the_air_alone() {
+fn a_dry_table_is_lit_by_the_lamp_in_the_air_only() {
     let lights = json!([lamp([0.0, 3.0, 0.0]), lamp([0.0, -0.5, 0.0])]);
     let table = |lid: bool| {
         pool(Vec3::splat(0.5), lights.clone(), |v| {

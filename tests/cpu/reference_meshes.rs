@@ -1,4 +1,4 @@
-//! Meshes in the float64 truth: their shadows, their light, their place.
+//! Meshes in the float64 reference: shadows, light, placement.
 
 use std::sync::Arc;
 
@@ -257,7 +257,7 @@ fn dry_and_buried_objects_change_nothing() {
 }
 
 #[test]
-fn the_way_to_a_box_is_shorter_than_to_the_floor() {
+fn the_path_to_a_box_is_shorter_than_to_the_floor() {
     let block = a_box(DVec3::ZERO, Vec3::new(3.0, 0.1, 3.0));
     let mut scene = scene(
         90.0,

@@ -1,4 +1,5 @@
-//! The reference lays out the texels of a map on an object by itself. They have to be those of the renderer's level map.
+//! The reference computes the layout of the texels of a map on an object on its own. It has to equal that of the renderer's level
+//! map.
 
 use caustica::facts::placement::LevelBox;
 use caustica::reference::{TruthKind, TruthSettings, truth};
@@ -81,7 +82,7 @@ fn a_map_on_an_object_has_the_texels_of_its_level_map() {
         assert_eq!(truth.compared, with_surface(&scene), "{light}");
         truth.compared
     });
-    // Each light sees another side, and neither all nor nothing of the map.
+    // Each light reaches another side, and neither all nor nothing of the map.
     for (i, map) in maps.iter().enumerate() {
         let share = map.iter().filter(|&&has| has).count() as f64 / map.len() as f64;
         assert!((0.1..0.9).contains(&share), "{share}");

@@ -1,7 +1,7 @@
-//! The rooms of the house, which are the folders and files right under `src/`: which of them use which, read from the sources.
+//! Dependencies between the rooms (the folders and files directly under `src/`), read from the sources.
 //!
 //! A use is a path that starts at the root of the crate: `crate::…`, alone or in groups, or as many `super::` as lead there.
-//! Comments and texts do not count.
+//! Comments and strings are ignored.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -317,7 +317,7 @@ fn rooms_are_in_no_circle() {
 }
 
 #[test]
-fn nobody_but_the_waves_knows_what_water_is_made_up_of() {
+fn only_the_waves_know_how_water_is_represented() {
     let waves = std::fs::read_to_string(folder().join("waves/mod.rs")).unwrap();
     let waves = without_comments_and_texts(&waves);
     assert!(waves.contains("\nmod sines;"), "a kind of water is private");

@@ -1,4 +1,4 @@
-//! What a scene's facts warn of before anything is rendered.
+//! Facts of a scene, and the warnings they give before anything is rendered.
 
 use caustica::facts::SceneFacts;
 use caustica::facts::source::Source;
@@ -98,7 +98,7 @@ fn comes_out(facts: &SceneFacts) -> bool {
 }
 
 #[test]
-fn waves_that_send_light_out_again_are_known_to() {
+fn waves_that_let_light_leave_again_are_recognised() {
     let (mut seen, mut spared) = (0, 0);
     for slope in [0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 6.0] {
         for elevation_deg in [90.0, 60.0, 30.0, 10.0] {

@@ -1,4 +1,4 @@
-//! What may be asked of a scene: views with their layers, maps of floor and meshes.
+//! Outputs of a scene: views with their layers, maps of floor and meshes.
 
 use serde_json::{Value, json};
 
@@ -87,7 +87,7 @@ fn the_light_of_a_map_is_a_sun_or_a_point_light() {
 }
 
 #[test]
-fn a_mesh_under_several_suns_needs_to_know_which() {
+fn a_map_of_a_mesh_under_several_suns_needs_a_light() {
     let mut scene = map_scene(json!({ "receiver": 0 }));
     let sun = scene["lights"][0].clone();
     scene["lights"].as_array_mut().unwrap().push(sun);

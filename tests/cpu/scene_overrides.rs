@@ -1,4 +1,4 @@
-//! Fields replaced from outside: which there are, and how their text becomes JSON.
+//! Fields replaced from outside: the list of fields, and how their text becomes JSON.
 
 use caustica::scene::overrides::{Field, apply, fields};
 use caustica::scene::{Output, Scene};
@@ -179,7 +179,7 @@ fn a_dial_joins_the_method_that_stands_there() {
 }
 
 #[test]
-fn bad_values_are_refused_by_the_reading() {
+fn bad_values_are_refused_on_reading() {
     for (pointer, text) in [
         ("/output/width", "wide"),
         ("/output/width", "-1"),
@@ -198,7 +198,7 @@ fn bad_values_are_refused_by_the_reading() {
 }
 
 #[test]
-fn what_is_no_object_is_left_for_the_reading_to_refuse() {
+fn values_that_are_not_objects_are_left_for_reading_to_refuse() {
     for start in [json!([]), json!(null), json!(3), json!({ "output": 3 })] {
         assert_eq!(overridden(start.clone(), &[("/output/width", "7")]), start);
     }

@@ -1,4 +1,4 @@
-//! JSON to scene: what is accepted, and where and how a refusal points.
+//! JSON to scene: what is accepted, and the pointers and texts of refusals.
 
 use caustica::scene::{
     Camera, FloorWord, Issue, IssueKind, Light, Output, Receiver, Scale, Scene, SceneError, Wave,
@@ -70,7 +70,7 @@ fn texts_that_are_not_json_are_refused_with_line_and_column() {
         ("{\n  \"time_s\": }", "line 2, column 13"),
         (
             "{} {}",
-            "something follows the JSON document (line 1, column 4)",
+            "there is text after the JSON document (line 1, column 4)",
         ),
         ("{\"time_s\": NaN}", "line 1, column 12"),
         ("{\"time_s\": 01}", "line 1"),

@@ -1,4 +1,4 @@
-//! Meshes by id, and the hash of what is rendered.
+//! Meshes by id, and the hash of a scene.
 
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ fn meshes_are_looked_up_in_the_order_of_the_objects() {
 }
 
 #[test]
-fn an_unknown_mesh_is_told_from_an_invalid_scene() {
+fn an_unknown_mesh_is_distinguished_from_an_invalid_scene() {
     let objects =
         json!([{ "mesh": "blake3:00" }, { "mesh": "blake3:ff" }, { "mesh": "teapot.obj" }]);
     let error = resolved(with(full(), "/objects", objects.clone())).unwrap_err();

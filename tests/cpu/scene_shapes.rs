@@ -1,4 +1,4 @@
-//! Values of the wrong shape in a scene: a table of what is wrong, where the refusal points, and what it says.
+//! Values of the wrong type in a scene: a table of inputs, with pointer and text of the refusal.
 
 use caustica::scene::IssueKind;
 
@@ -355,7 +355,7 @@ const SHAPES: &[Refusal] = &[
 ];
 
 #[test]
-fn wrong_shapes_are_refused_with_place_and_cure() {
+fn wrong_types_are_refused_with_place_and_accepted_values() {
     for (text, pointer, detail, accepted) in SHAPES {
         let issue = refusal(text);
         assert_eq!(issue.pointer, *pointer, "{text}: {issue}");

@@ -1,4 +1,4 @@
-//! Ranges and limits of a scene: every rule is broken once, and obeyed at its very edge.
+//! Ranges and limits of a scene: every rule is broken once, and met exactly at its limit.
 
 use caustica::config::Limits;
 use caustica::methods;
@@ -374,7 +374,7 @@ fn scales_per_axis_are_checked_one_by_one() {
 }
 
 #[test]
-fn limits_are_said_with_numbers() {
+fn limits_are_reported_with_numbers() {
     let limits = Limits {
         max_pixels: 100,
         max_objects: 1,

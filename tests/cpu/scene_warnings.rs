@@ -1,4 +1,4 @@
-//! What is left out is told with the flux concerned, against closed forms.
+//! Warnings about light that is left out state the flux concerned, against closed forms.
 
 use std::f64::consts::{PI, TAU};
 
@@ -90,7 +90,7 @@ fn is_near(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn shadows_on_the_water_are_told_with_what_they_would_take() {
+fn shadows_on_the_water_are_warned_of_with_the_flux_they_would_block() {
     let plate = |y: f64| (PLATE, json!({ "translation_m": [0.3, y, -0.2] }));
     let dry = |light: Value, y: f64| {
         let found = warnings(&[light], &[plate(y)], &json!({}));
@@ -114,13 +114,13 @@ fn shadows_on_the_water_are_told_with_what_they_would_take() {
         expected,
         0.05,
     );
-    // A raft that lies right on the water stops what falls on it.
+    // A raft directly on the water blocks what falls on it.
     is_near(dry(sun(50.0), 0.0), 50_f64.to_radians().sin(), 0.02);
     // Half of the plate's shadow falls beside the floor's window of 4 m.
     let beside = (PLATE, json!({ "translation_m": [4.0, 1.0, 0.0] }));
     let found = warnings(&[sun(90.0)], &[beside], &json!({}));
     is_near(unit_flux(&found, "dry_object_casts_no_shadow"), 0.5, 0.02);
-    // Under a point light what counts is how large the plate looks from there.
+    // Under a point light, the solid angle of the plate as seen from there counts.
     let from_m = DVec3::new(0.0, 2.5, 0.0);
     let corner = DVec3::new(-0.2, 1.0, -0.7) - from_m;
     let looks_sr = 2.0 * solid_angle(corner, DVec3::Z, DVec3::X).abs();
@@ -134,7 +134,7 @@ fn shadows_on_the_water_are_told_with_what_they_would_take() {
 }
 
 #[test]
-fn what_reaches_out_of_the_water_counts_with_its_dry_part() {
+fn objects_that_reach_out_of_the_water_count_with_their_dry_part() {
     // A turned box: of the part above the water an eighth of the width is left.
     let upright = json!({ "translation_m": [0, 0.25, 0], "scale": [0.6, 1.5, 0.4] });
     let found = warnings(&[sun(90.0)], &[("box", upright.clone())], &json!({}));
@@ -157,7 +157,7 @@ fn what_reaches_out_of_the_water_counts_with_its_dry_part() {
 }
 
 #[test]
-fn what_stays_below_the_crests_is_told_where_it_takes_light() {
+fn objects_in_the_waves_are_warned_of_with_the_flux_they_catch() {
     let flat = json!({});
     let at = |y: f64| {
         let plate = json!({ "translation_m": [0, y, 0] });
@@ -175,7 +175,7 @@ fn what_stays_below_the_crests_is_told_where_it_takes_light() {
 }
 
 #[test]
-fn planes_tell_what_objects_stop_twice() {
+fn planes_warn_of_light_that_objects_block_twice() {
     let planes = json!({ "method": "planes" });
     let two = |x: f64| {
         let objects = [
@@ -189,7 +189,7 @@ fn planes_tell_what_objects_stop_twice() {
     is_near(unit_flux(&two(0.0), code), enters, 0.02);
     is_near(unit_flux(&two(0.4), code), 0.6 * enters, 0.03);
     assert!(unit_flux(&two(2.0), code) == 0.0);
-    // From under the water what counts is how large the upper plate looks, which hides part of the lower one.
+    // From under the water, the solid angle of the upper plate counts, which hides part of the lower one.
     let from_m = DVec3::new(0.0, -0.25, 0.0);
     let objects = [
         (PLATE, json!({ "translation_m": [0, -0.5, 0] })),
@@ -202,7 +202,7 @@ fn planes_tell_what_objects_stop_twice() {
 }
 
 #[test]
-fn lights_within_objects_and_at_the_water_tell_their_flux() {
+fn lights_within_objects_and_at_the_water_are_warned_of_with_their_flux() {
     let around = json!({ "translation_m": [0, -1, 0], "scale": 0.5 });
     let found = warnings(&[lamp([0.0, -1.0, 0.0])], &[("box", around)], &json!({}));
     is_near(unit_flux(&found, "light_within_object"), 2.0 * TAU, 1e-9);
@@ -216,7 +216,7 @@ fn lights_within_objects_and_at_the_water_tell_their_flux() {
 }
 
 #[test]
-fn what_is_thinner_than_a_texel_is_told() {
+fn objects_thinner_than_a_texel_are_warned_of() {
     let thin = "object_thinner_than_texel";
     let under =
         json!({ "translation_m": [0, -1, 0], "rotation": [0, 0.382_683_432, 0, 0.923_879_533] });
@@ -231,7 +231,7 @@ fn what_is_thinner_than_a_texel_is_told() {
         let found = warnings(&[sun(90.0)], &[solid], &json!({}));
         assert!(found.iter().all(|w| w.code != thin), "{found:?}");
     }
-    // A plate on its edge stops nothing.
+    // A plate on its edge blocks nothing.
     let upright = json!({ "translation_m": [0, -1, 0], "rotation": [0.707_106_781_186_547_5, 0, 0, 0.707_106_781_186_547_5] });
     let found = warnings(&[sun(90.0)], &[(PLATE, upright)], &json!({}));
     assert!(found.iter().all(|w| w.code != thin), "{found:?}");
@@ -261,7 +261,7 @@ fn what_is_thinner_than_a_texel_is_told() {
 }
 
 #[test]
-fn what_was_left_out_of_a_mesh_is_told_once_and_stops_nothing() {
+fn parts_left_out_of_a_mesh_are_warned_of_once_and_block_nothing() {
     let under = json!({ "translation_m": [0, -1, 0] });
     let twice = [(MENDED, under.clone()), (MENDED, under.clone())];
     let found = warnings(&[sun(90.0)], &twice, &json!({}));
@@ -275,7 +275,7 @@ fn what_was_left_out_of_a_mesh_is_told_once_and_stops_nothing() {
 }
 
 #[test]
-fn many_objects_share_the_rays_that_look_for_their_shadows() {
+fn many_objects_share_the_rays_that_sample_their_shadows() {
     let plate = json!({ "translation_m": [0, 1, 0], "scale": 0.5 });
     let many = vec![(PLATE, plate); 256];
     let found = warnings(&[sun(90.0)], &many, &json!({}));

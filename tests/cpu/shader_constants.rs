@@ -1,4 +1,4 @@
-//! Figures that stand in Rust and in WGSL are the same, and dispatches cover their work.
+//! Constants in Rust and in WGSL are equal, and dispatches cover their work.
 
 use caustica::facts::{MOST_LIGHTS, SceneFacts};
 use caustica::gpu::shader::Module;

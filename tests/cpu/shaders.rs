@@ -1,4 +1,4 @@
-//! The shaders without an adapter: files, structs, twins and bindings against what the Rust side says of them.
+//! The shaders without an adapter: files, structs, twins and bindings against the Rust side.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -129,7 +129,7 @@ fn a_file_is_pasted_once() {
 }
 
 #[test]
-fn what_is_not_valid_is_an_error_that_shows_where() {
+fn invalid_wgsl_is_an_error_with_its_line() {
     for broken in ["fn a( {}", "fn a() -> f32 { return 1u; }"] {
         let Err(GpuError::Shader { message, .. }) = Module::parse("a.wgsl", broken.to_owned())
         else {
@@ -316,9 +316,9 @@ fn bindings_of_an_unknown_entry_point_are_an_error() {
     assert!(module.bindings("stages/hits.wgsl", "misses_main").is_err());
 }
 
-/// Slots are told apart by their names: two with the same name are the same.
+/// Slots are identified by their names: two with the same name are the same.
 #[test]
-fn slots_have_names_of_their_own() {
+fn slot_names_are_unique() {
     let mut known: BTreeMap<&str, &'static Slot> = BTreeMap::new();
     for pass in methods::all_passes() {
         for slot in pass.slots() {

@@ -1,4 +1,4 @@
-//! The generated meshes: the files are what the generator writes, and the shapes are whole and face outward.
+//! The generated meshes: the files are what the generator writes, and the shapes are closed and face outward.
 
 #[path = "../../examples/make_teapot/meshes/mod.rs"]
 mod meshes;
@@ -158,7 +158,7 @@ fn the_teapot_is_mirrored_front_to_back_only() {
 }
 
 #[test]
-fn the_teapot_stops_what_falls_on_it() {
+fn the_teapot_blocks_what_falls_on_it() {
     let mesh = load("teapot.obj", None);
     // Down on the knob, the handle and the spout; and past the handle and the spout.
     let down = |x: f32, z: f32| {

@@ -1,4 +1,4 @@
-//! The truth about views and maps on objects, against closed forms, against the map on the floor, and against itself.
+//! The reference of views and of maps on objects, against closed forms, against the map on the floor, and against itself.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -399,7 +399,7 @@ fn a_floor_map_may_have_the_sky() {
 }
 
 #[test]
-fn whoever_cancels_is_let_go() {
+fn cancelling_ends_the_computation() {
     for output in [
         json!({ "kind": "view", "width": 64, "height": 64 }),
         json!({ "kind": "irradiance_map", "receiver": 0 }),

@@ -1,4 +1,4 @@
-//! Truths kept on disk.
+//! References kept on disk.
 
 use std::path::{Path, PathBuf};
 
@@ -43,7 +43,7 @@ fn a_truth_is_found_again() {
         },
         first
     );
-    // A better one is asked for: counted, and kept instead.
+    // A better one is requested: it is computed, and kept instead.
     let better = ask(&scene, &folder, first.relative_error * 0.3);
     assert!(!better.from_disk && better.relative_error < first.relative_error);
     assert!(ask(&scene, &folder, 0.05).relative_error == better.relative_error);

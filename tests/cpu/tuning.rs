@@ -1,4 +1,4 @@
-//! Choosing dials: from probes to cells, from a budget to cells, and the calibration behind it.
+//! Choosing dials: from trial renders to cells, from a budget to cells, and the calibration behind it.
 
 use std::convert::Infallible;
 
@@ -41,7 +41,7 @@ fn the_fewest_cells_under_the_target_are_chosen() {
 }
 
 #[test]
-fn probes_stay_cheaper_than_the_frame() {
+fn trial_renders_stay_cheaper_than_the_frame() {
     let mut probed = Vec::new();
     let mut error = scene(0.1, 2.0);
     let choice = choose::for_error(0.001, &map(2048), |cells| {
@@ -93,7 +93,7 @@ const TEAPOT_POOL: &Measured = &[
     (2048, 0.039, 0.03),
 ];
 
-/// True error and estimate with so many cells, between what was measured.
+/// True error and estimate with this number of cells, interpolated between measurements.
 fn between(measured: &Measured, cells: u32) -> (f64, f64) {
     let pair = measured
         .windows(2)
@@ -107,7 +107,7 @@ fn between(measured: &Measured, cells: u32) -> (f64, f64) {
 }
 
 #[test]
-fn coarse_probes_that_underestimate_their_error_are_not_trusted() {
+fn coarse_trial_renders_that_underestimate_their_error_are_not_trusted() {
     for (measured, is_view, targets) in [
         (STEEP_POOL, false, [0.5, 0.25, 0.12, 0.06, 0.01]),
         (TEAPOT_FLOOR, false, [0.5, 0.25, 0.12, 0.06, 0.01]),
@@ -135,7 +135,7 @@ fn coarse_probes_that_underestimate_their_error_are_not_trusted() {
 }
 
 #[test]
-fn what_is_never_trusted_promises_only_what_is_safe() {
+fn an_untrusted_error_predicts_only_safe_targets() {
     for (target, most, expected) in [
         // Even twice the error stays under the target: the probed cells will do, no fewer.
         (0.5, 2048, (1024, true, 5)),
@@ -159,7 +159,7 @@ fn what_is_never_trusted_promises_only_what_is_safe() {
 }
 
 #[test]
-fn what_cannot_be_met_is_said_with_the_best_there_is() {
+fn targets_that_cannot_be_met_are_reported_with_the_best_there_is() {
     let choice = choose::for_error(1e-4, &map(256), scene(0.04, 2.0)).unwrap();
     assert!(!choice.meets);
     assert_eq!(choice.cells, 256);
@@ -167,7 +167,7 @@ fn what_cannot_be_met_is_said_with_the_best_there_is() {
 }
 
 #[test]
-fn of_a_view_the_order_is_measured() {
+fn the_order_of_a_view_is_measured() {
     let view = Prospect {
         is_view: true,
         ..map(2048)
@@ -190,7 +190,7 @@ fn darkness_needs_the_fewest() {
 }
 
 #[test]
-fn an_error_of_a_probe_is_passed_on() {
+fn an_error_of_a_trial_render_is_passed_on() {
     assert_eq!(
         choose::for_error(0.01, &map(2048), |_| Err("lost")),
         Err("lost")
@@ -214,7 +214,7 @@ fn a_budget_gets_the_most_cells_it_pays_for() {
 }
 
 #[test]
-fn rungs_are_valid_and_keep_what_is_no_matter_of_light() {
+fn rungs_are_valid_and_keep_dials_that_do_not_concern_light() {
     let given = Quality {
         pixel_samples: 3,
         target_error: Some(0.01),
@@ -233,7 +233,7 @@ fn rungs_are_valid_and_keep_what_is_no_matter_of_light() {
 }
 
 #[test]
-fn rates_are_found_again() {
+fn rates_are_recovered() {
     let truth = PassRate {
         start_ms: 0.5,
         unit_ns: 20.0,
@@ -287,7 +287,7 @@ fn the_built_in_calibration_knows_every_pass() {
 }
 
 #[test]
-fn a_file_that_is_no_calibration_is_refused() {
+fn a_file_that_is_not_a_calibration_is_refused() {
     let good = serde_json::to_value(Calibration::default()).unwrap();
     let mut cases = vec![("{}".to_owned(), "missing field")];
     for (field, value, complaint) in [

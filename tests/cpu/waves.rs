@@ -1,4 +1,4 @@
-//! The water surface: slope, curvature, rows, shift, time, bounds, and what the GPU gets.
+//! The water surface: slope, curvature, rows, recentring, time, bounds, and the data for the GPU.
 
 use caustica::physics::dispersion::angular_frequency;
 use caustica::scene::{Scene, SineWave, Wave};

@@ -42,7 +42,7 @@ fn a_study_is_written_and_its_truth_kept() {
     for line in ["water_cells 16", "water_cells 32", "study.md"] {
         assert!(text.contains(line), "{line} in {text}");
     }
-    // No terminal looks: a line for each step, before anything is found.
+    // stderr is no terminal: a line for each step, before any result.
     let steps: Vec<&str> = text.lines().take(4).collect();
     let expected = [
         "the float64 truth",
@@ -130,7 +130,7 @@ fn plan_says_what_was_chosen() {
     ] {
         assert!(chosen.contains(word), "{word} in {chosen}");
     }
-    // Who asks for nothing is told nothing.
+    // Without a request for accuracy, nothing about it is reported.
     let output = program("plan", &[], &folder.0);
     let text = String::from_utf8(output.stdout.clone()).unwrap();
     assert!(text.starts_with("Passes"), "{text}");

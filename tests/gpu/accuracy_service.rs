@@ -1,4 +1,4 @@
-//! Accuracy over HTTP with the real renderer: studies, and wishes for an error or a time.
+//! Accuracy over HTTP with the real renderer: studies, and targets for an error or a time.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -86,7 +86,7 @@ async fn a_study_has_figures_plots_and_pictures() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn the_accept_header_chooses_what_a_study_is_told_in() {
+async fn the_accept_header_selects_the_format_of_a_study() {
     let service = default_service().await;
     for (media_type, starts_as) in [
         ("text/markdown", b"#".as_slice()),
@@ -108,7 +108,7 @@ async fn the_accept_header_chooses_what_a_study_is_told_in() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn what_makes_no_sense_is_refused_with_its_place() {
+async fn invalid_requests_are_refused_with_their_place() {
     let service = default_service().await;
     let many: Vec<u32> = (16..49).collect();
     let grid = json!({ "water_cells": many[..9], "map_texels": many[..9] });
@@ -261,7 +261,7 @@ async fn a_client_that_leaves_makes_room_for_the_next() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_wanted_error_is_turned_into_dials_by_render_and_plan() {
+async fn a_target_error_is_turned_into_dials_by_render_and_plan() {
     let service = default_service().await;
     let wanted = scene(&[("/quality", json!({ "target_error": 0.1 }))]);
     let (_, stats) = service.render_json(&wanted).await;
@@ -279,7 +279,7 @@ async fn a_wanted_error_is_turned_into_dials_by_render_and_plan() {
         plan["chosen"]["water_cells"], chosen["water_cells"],
         "plan and render choose alike"
     );
-    // Who asks for nothing is told nothing.
+    // Without a request for accuracy, nothing about it is reported.
     let plain = scene(&[]).to_string();
     let reply = service
         .post("/v1/plan", "application/json", "*/*", plain)
@@ -288,7 +288,7 @@ async fn a_wanted_error_is_turned_into_dials_by_render_and_plan() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn wishes_without_sense_are_refused() {
+async fn targets_without_sense_are_refused() {
     let service = default_service().await;
     for (quality, pointer) in [
         (

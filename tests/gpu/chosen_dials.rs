@@ -1,4 +1,4 @@
-//! What dials are chosen by: the settings that are told, and nothing that happens to be cached.
+//! Chosen dials depend on the documented settings only, not on what happens to be cached.
 
 use caustica::calibration::Calibration;
 use caustica::config::RenderConfig;
@@ -34,7 +34,7 @@ fn narrow() -> RenderConfig {
 }
 
 #[test]
-fn what_is_cached_does_not_decide_which_dials_are_chosen() {
+fn cached_maps_do_not_affect_the_chosen_dials() {
     for scene in [pool(true), pool(false)] {
         let mut renderer = new_renderer(&narrow());
         let mut chosen = || -> ChosenDials {

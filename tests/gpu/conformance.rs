@@ -1,4 +1,5 @@
-//! What every method has to do, or to skip with a reason: the suite walks [`methods::ALL`] and knows no method by name.
+//! The conformance suite: tests that every method has to pass, or to skip with a reason. It walks [`methods::ALL`] and names no
+//! method.
 
 use caustica::accuracy::{convergence_order, metrics};
 use caustica::lab::hard_cases;
@@ -48,7 +49,7 @@ fn hard_scenes() -> impl Iterator<Item = &'static hard_cases::Case> {
 }
 
 #[test]
-fn methods_have_names_of_their_own_and_say_what_they_skip() {
+fn methods_have_unique_names_and_report_what_they_skip() {
     let known = cases();
     for (k, method) in methods::ALL.iter().enumerate() {
         let later = &methods::ALL[k + 1..];

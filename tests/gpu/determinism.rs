@@ -126,7 +126,7 @@ fn another_moment_gives_other_bytes() {
 }
 
 #[test]
-fn what_dispatches_bind_serves_frame_after_frame() {
+fn bind_groups_are_reused_frame_after_frame() {
     let at = |moment_s: f64, red_w_m2: f64| {
         scene_files::scene(json!({
             "time_s": moment_s,

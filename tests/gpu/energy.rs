@@ -1,4 +1,4 @@
-//! Where the light goes: the account of every scene closes, and its terms are those of the maps, the closed form and the reference.
+//! Energy accounts: every scene's account closes, and its terms equal those of the maps, the closed form and the reference.
 
 use caustica::physics::fresnel::fresnel_transmittance;
 use caustica::reference::{self, ReferenceSettings};
@@ -50,7 +50,7 @@ fn every_scene_closes() {
 }
 
 #[test]
-fn what_landed_is_what_lies_on_the_map() {
+fn the_landed_flux_is_that_on_the_map() {
     for name in ["flat", "sine_pool"] {
         let resolved = scene_files::load(name, &[]);
         let map = Map::from(&resolved);
@@ -158,7 +158,7 @@ fn a_steep_sea_under_a_low_sun_closes() {
 }
 
 #[test]
-fn cells_too_coarse_for_the_waves_are_told_with_the_flux_through_them() {
+fn cells_too_coarse_for_the_waves_are_warned_of_with_the_flux_through_them() {
     // The lamp's window is small, so that its cells are fine enough; the sun's are not.
     let scene = json!({
         "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 0.5 }] },

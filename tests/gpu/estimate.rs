@@ -1,4 +1,4 @@
-//! A frame's estimate of its own error, and dials chosen for a wanted error or time, against the float64 reference.
+//! A frame's estimate of its own error, and dials chosen for a target error or time, against the float64 reference.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;
@@ -51,7 +51,7 @@ fn the_estimate_is_within_a_factor_of_two() {
 }
 
 #[test]
-fn so_it_is_where_few_cells_stand_beside_many_texels() {
+fn the_estimate_is_also_good_with_few_cells_and_many_texels() {
     // Texels are compared by quarters there, and the cells know little of the waves: 0.72 and 0.8 were measured.
     for name in ["steep_pool", "teapot_floor"] {
         let changes = [
@@ -79,7 +79,7 @@ fn so_it_is_where_few_cells_stand_beside_many_texels() {
 }
 
 #[test]
-fn it_changes_nothing_else() {
+fn the_estimate_changes_nothing_else() {
     let plain = sine_pool_with(&[("water_cells", "64")]);
     let judged = sine_pool_with(&[("water_cells", "64"), ("estimate_error", "true")]);
     assert!(plain.stats.accuracy.is_none());
@@ -140,7 +140,7 @@ fn every_output_and_any_number_of_suns_can_be_estimated() {
 }
 
 #[test]
-fn suns_do_not_get_into_each_others_estimate() {
+fn suns_do_not_affect_each_others_estimate() {
     let sun = |azimuth: f64, watts: f64| json!({ "kind": "sun", "elevation_deg": 60, "azimuth_deg": azimuth, "irradiance_w_m2": [watts, watts, watts] });
     let outputs = [
         |_| json!({ "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 96, "height": 96 }),
@@ -185,7 +185,7 @@ fn in_the_dark_there_is_nothing_to_estimate() {
 }
 
 #[test]
-fn a_wanted_error_is_kept_and_not_overpaid() {
+fn a_target_error_is_met_and_not_overpaid() {
     // The fewest cells that would do, by doubling and halving between: what a person could find by trying.
     for (target, most_cells) in [("0.05", 91), ("0.02", 181), ("0.01", 256), ("0.003", 512)] {
         let map = sine_pool_with(&[("target_error", target)]);
@@ -203,7 +203,7 @@ fn a_wanted_error_is_kept_and_not_overpaid() {
 }
 
 #[test]
-fn a_wanted_error_that_is_large_is_kept_too() {
+fn a_large_target_error_is_met_too() {
     // With 64 cells these estimate three quarters of their true error.
     for name in ["steep_pool", "teapot_floor"] {
         for target in [0.25, 0.12] {
@@ -252,7 +252,7 @@ fn the_chosen_dials_give_the_same_bytes_when_asked_for_by_name() {
 }
 
 #[test]
-fn an_impossible_wish_is_answered_with_the_best_there_is() {
+fn an_impossible_target_is_answered_with_the_best_there_is() {
     let mut scene = boxes(
         &json!({ "kind": "irradiance_map", "receiver": "floor", "width": 32, "height": 32 }),
         &json!([{ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [1, 1, 1] }]),
@@ -288,7 +288,7 @@ fn more_time_buys_more_cells_and_a_smaller_predicted_error() {
 }
 
 #[test]
-fn choosing_comes_on_top_of_a_time_budget_and_is_told() {
+fn choosing_is_added_to_a_time_budget_and_reported() {
     let budget = || sine_pool_with(&[("time_budget_ms", "100")]).frame.stats;
     budget();
     let stats = budget();
@@ -296,7 +296,7 @@ fn choosing_comes_on_top_of_a_time_budget_and_is_told() {
     let cells = chosen.water_cells.to_string();
     let by_name = sine_pool_with(&[("water_cells", &cells)]).frame.stats;
     println!("{:?} {:?}", stats.time_ms, by_name.time_ms);
-    // The look is a frame's light with half the cells; plans take microseconds.
+    // The trial render is a frame's light with half the cells; plans take microseconds.
     assert!(stats.time_ms.plan > 4.0 * by_name.time_ms.plan);
     let parts = stats.time_ms.plan + stats.time_ms.upload + stats.time_ms.gpu;
     assert!(parts <= stats.time_ms.total);

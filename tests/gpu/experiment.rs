@@ -7,7 +7,7 @@ use caustica::reference::{TruthSettings, truth};
 use super::harness::{new_renderer, try_render};
 
 #[test]
-fn the_thesis_done_again_on_a_small_scale() {
+fn the_thesis_repeated_on_a_small_scale() {
     // Its own: what other scenes left there would be given back in between, and count.
     let mut renderer = new_renderer(&RenderConfig::default());
     renderer.watch_allocator(true);

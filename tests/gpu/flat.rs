@@ -52,7 +52,7 @@ fn every_elevation_azimuth_and_water_gives_the_closed_form() {
     let azimuths = [0.0, 37.0, 180.0, 261.0];
     for (i, elevation) in elevations.into_iter().enumerate() {
         for (j, azimuth) in azimuths.into_iter().enumerate() {
-            // Clear and coloured water take turns, so that every elevation sees both.
+            // Clear and coloured water alternate, so that every elevation has both.
             let absorption = if (i + j) % 2 == 0 {
                 [0.0; 3]
             } else {
@@ -95,7 +95,7 @@ fn every_index_of_refraction_and_depth_gives_the_closed_form() {
 }
 
 #[test]
-fn a_view_sees_the_same_irradiance() {
+fn a_view_shows_the_same_irradiance() {
     let resolved = scene_files::scene(json!({
         "water": { "absorption_per_m": [0.35, 0.07, 0.03] },
         "floor": { "depth_m": 2, "size_m": [30, 30] },

@@ -1,4 +1,4 @@
-//! Every formula in f32 on this adapter against its f64 original; a broken one is found out, and the service refuses to work.
+//! Every formula in f32 on this adapter against its f64 original. A broken one is detected, and the service refuses to work.
 
 use std::collections::BTreeSet;
 use std::time::Duration;

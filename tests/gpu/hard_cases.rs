@@ -1,4 +1,4 @@
-//! The suite of hard cases, a test each; the names here and the suite's are compared.
+//! The suite of hard cases, one test for each. Another test compares the names here with the suite's.
 
 use std::process::Command;
 
@@ -172,7 +172,7 @@ cases! {
     }
 }
 
-/// In a process of its own the memory of the process is looked at, too.
+/// In a process of its own, the memory of the process is checked, too.
 #[test]
 fn many_renders_leave_the_process_as_it_was() {
     let output = Command::new(env!("CARGO_BIN_EXE_caustica"))

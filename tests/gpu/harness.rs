@@ -1,4 +1,4 @@
-//! One renderer for all tests, and a map that comes out of it.
+//! One renderer for all tests, and helpers to render maps.
 
 use std::ops::Deref;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};

@@ -1,5 +1,5 @@
-//! Many objects: the hierarchy over them changes nothing but the time, maps go by the size on the picture, and each object's map has
-//! its own measure.
+//! Many objects: the hierarchy over them changes only the time, map sizes follow the size in the picture, and each object's map
+//! has its own scale.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::config::RenderConfig;
@@ -47,7 +47,7 @@ fn the_hierarchy_over_instances_changes_no_bit() {
 }
 
 #[test]
-fn light_beside_the_objects_looks_for_none() {
+fn light_beside_the_objects_tests_no_instances() {
     let [from, to] = [
         "instance_nodes(count), may_meet)",
         "instance_nodes(count), true)",
@@ -203,7 +203,7 @@ fn every_object_has_the_measure_of_its_own_map() {
 }
 
 #[test]
-fn an_irradiance_map_takes_no_heed_of_the_picture() {
+fn an_irradiance_map_ignores_the_picture() {
     let mut scene = instances_scene::scene(5);
     scene["output"] = json!({ "kind": "irradiance_map", "receiver": 0 });
     let plain = Map::of(scene.clone());

@@ -1,4 +1,4 @@
-//! A kernel is compiled once, whatever is said of constants that its entry point does not use.
+//! A kernel is compiled once, regardless of constants that its entry point does not use.
 
 use caustica::config::RenderConfig;
 use caustica::gpu::kernel::RasterTargets;
@@ -9,7 +9,7 @@ use serde_json::json;
 use super::harness::{new_renderer, render_with, renderer};
 use super::scene_files;
 
-/// An entry point for each way to use `FIRST`, and one that uses none; nothing uses `SECOND`.
+/// An entry point for each kind of use of `FIRST`, and one that uses none; nothing uses `SECOND`.
 const SHADER: &str = "
     override FIRST: bool = true;
     override SECOND: bool = true;

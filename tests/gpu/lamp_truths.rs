@@ -89,7 +89,8 @@ const TURNED: [f64; 4] = [0.0, 0.0, 0.173_648_177_666_930_33, 0.984_807_753_012_
 /// Lamps above the water and under it.
 const LAMPS: [(&str, [f64; 3]); 2] = [("above", [0.3, 0.8, -0.2]), ("under", [0.4, -0.3, 0.2])];
 
-/// Errors of the map of so many `texels` on `mesh` against the truth to `error`, over the texels that `wanted` picks from the truth, and that.
+/// Errors of the map with `texels` on `mesh` against a reference accurate to `error`, over the texels that `wanted` selects from
+/// the reference; and the reference.
 fn map_errors(
     mesh: &Arc<Mesh>,
     (texels, error): (u32, f64),

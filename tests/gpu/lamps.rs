@@ -1,4 +1,4 @@
-//! Point lights above and under water: closed forms, the reference, sums of lights, and the places where a light can hardly stand.
+//! Point lights above and under water: closed forms, the reference, sums of lights, and extreme positions.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::reference::closed_form::LampOverFlatWater;
@@ -348,7 +348,7 @@ fn a_light_under_an_object_shines_up_at_it() {
 }
 
 #[test]
-fn dry_surfaces_see_lamps_in_the_air_and_their_shadows() {
+fn dry_surfaces_are_lit_by_lamps_in_the_air_with_shadows() {
     let view = |lamp_x: f64, objects: Value| {
         let resolved = scene_files::scene(json!({
             "lights": [{ "kind": "point", "position_m": [lamp_x, 3, 0], "intensity_w_sr": [8, 4, 2] }],

@@ -1,4 +1,4 @@
-//! Surfaces of an object behind its first: what only tilted rays reach.
+//! Further layers: surfaces of an object behind its first, which only tilted rays reach.
 
 use caustica::accuracy::metrics::relative_l1;
 use caustica::frame::Frame;
@@ -23,7 +23,8 @@ const SIZE: [usize; 2] = [64, 48];
 /// Pixels of the renderer for each of those along both: the truth is the mean over a pixel, a picture is what its middle shows.
 const FINER: usize = 4;
 
-/// The sides of the box in `scenes/box_sides.json`, with so many layers, in a picture `finer` times as large as that of the truth.
+/// The sides of the box in `scenes/box_sides.json` with the given number of layers, in a picture `finer` times as large as that
+/// of the reference.
 fn box_sides(layers: &str, finer: usize) -> ResolvedScene {
     let [width, height] = SIZE.map(|n| (n * finer).to_string());
     scene_files::load(

@@ -1,5 +1,5 @@
-//! Level maps between frames: built once, found again, thrown out for others, built ahead, and gone with their mesh or their
-//! device; whatever happens, a frame has the bytes it would have had.
+//! Level maps between frames: built once, reused, evicted, built ahead, and freed with their mesh or device. The bytes of a frame
+//! never depend on this.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -104,7 +104,7 @@ fn building(frame: &Frame) -> Vec<u32> {
         .collect()
 }
 
-/// A renderer with room for level maps of so many MiB.
+/// A renderer with a level-map budget of this number of MiB.
 fn renderer_of_mib(level_map_budget_mib: u64) -> Renderer {
     new_renderer(&RenderConfig {
         level_map_budget_mib,
@@ -146,7 +146,7 @@ fn after_a_warm_up_the_first_frame_finds_its_map() {
 }
 
 #[test]
-fn a_warm_map_serves_all_that_see_it_alike_and_no_other() {
+fn a_warm_map_serves_all_scenes_with_the_same_key_and_no_other() {
     let mut shared = renderer();
     let mesh = pyramid(0.72);
     let none = CancellationToken::new();
@@ -222,7 +222,7 @@ fn several_suns_are_warmed_at_once() {
 }
 
 #[test]
-fn five_meshes_take_turns_in_the_room_for_two() {
+fn five_meshes_alternate_in_a_budget_for_two() {
     let budget = 2 << 20;
     assert!(2 * map_bytes(256) <= budget && budget < 3 * map_bytes(256));
     let mut small = renderer_of_mib(2);
@@ -245,7 +245,7 @@ fn five_meshes_take_turns_in_the_room_for_two() {
             }
         }
     }
-    // Each of the fifteen but the last two has made way.
+    // All of the fifteen except the last two have been evicted.
     assert_eq!(evictions, 13);
     let total = small.level_map_cache();
     assert_eq!((total.hits, total.misses, total.evictions), (0, 15, 13));
@@ -260,7 +260,7 @@ fn five_meshes_take_turns_in_the_room_for_two() {
     }
 }
 
-/// Checks that an error tells the setting and both figures.
+/// Checks that an error names the setting and both figures.
 fn assert_over_budget(error: &RenderError, needed: u64, budget: u64) {
     let RenderError::OverBudget {
         what,
@@ -361,7 +361,7 @@ fn instances_with_the_same_rotation_share_a_map() {
 }
 
 #[test]
-fn maps_in_the_way_are_moved_and_told() {
+fn maps_in_the_way_are_moved_and_reported() {
     // A small map, then a large one behind it: two large ones fit the budget, but not around the first where it lies.
     let budget = 8 << 20;
     assert!(2 * map_bytes(512) <= budget && budget < 2 * map_bytes(512) + map_bytes(256));

@@ -146,7 +146,7 @@ async fn a_deleted_mesh_frees_its_maps() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_budget_for_no_map_is_told_and_does_no_harm() {
+async fn a_budget_for_no_map_is_reported_and_does_no_harm() {
     let config = RenderConfig {
         level_map_budget_mib: 1,
         ..RenderConfig::default()

@@ -1,4 +1,4 @@
-//! Tests that need an adapter (software Vulkan will do). None is skipped: without an adapter they fail.
+//! Tests that need an adapter (software Vulkan is enough). None is skipped: without an adapter they fail.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![allow(

@@ -1,4 +1,4 @@
-//! What stays on the GPU between frames: never more than the budget, and nothing of freed buffers after some idleness.
+//! Memory kept on the GPU between frames: never above the budget, and freed buffers are released when idle.
 
 use std::sync::Arc;
 
@@ -105,7 +105,7 @@ fn planned_geometry(renderer: &mut Renderer, resolved: &ResolvedScene) -> u64 {
 }
 
 #[test]
-fn scenes_that_take_turns_upload_their_meshes_once() {
+fn alternating_scenes_upload_their_meshes_once() {
     let scenes = [below("teapot.obj"), below("box.obj")];
     let mut renderer = Renderer::new(&RenderConfig::default()).unwrap();
     let planned = scenes
@@ -137,7 +137,7 @@ fn scenes_that_take_turns_upload_their_meshes_once() {
 }
 
 #[test]
-fn meshes_make_way_in_the_order_of_their_last_use_where_memory_is_short() {
+fn meshes_are_evicted_in_the_order_of_their_last_use_where_memory_is_short() {
     // Each takes some megabytes.
     let meshes: Vec<Arc<Mesh>> = (0..3).map(|step| grid(150 + step)).collect();
     let scenes: Vec<ResolvedScene> = meshes.iter().map(below_mesh).collect();

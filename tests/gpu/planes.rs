@@ -1,4 +1,4 @@
-//! Light placed on meshes by reference planes, and by an image of every slice: the thesis's own ways beside hits.
+//! Light placed on meshes by reference planes and by slice images (the thesis's own methods), compared with hits.
 
 use std::sync::{Arc, OnceLock};
 
@@ -93,7 +93,7 @@ fn smart_slicing_gives_the_same_bytes_with_fewer_planes() {
 }
 
 #[test]
-fn many_planes_come_to_what_hits_give() {
+fn many_planes_approach_the_result_of_hits() {
     let hit = on_object("sphere", json!({}));
     assert!(hit.stats.planes.is_empty());
     let mut last = f64::INFINITY;
@@ -190,7 +190,7 @@ fn the_floor_gets_nearly_the_same_shadow() {
 }
 
 #[test]
-fn what_method_does_not_conserve_is_said() {
+fn light_that_a_method_does_not_conserve_is_reported() {
     let few = on_object("sphere", planes(4, "uniform"));
     let many = on_object("sphere", planes(201, "uniform"));
     println!("closure {:.2e} and {:.2e}", few.closure(), many.closure());

@@ -1,5 +1,5 @@
-//! Wrong signs planted in shaders: each must show against the float64 reference. (Those planted in the reference itself are for
-//! `make mutants`, which changes the Rust sources.)
+//! Wrong signs planted in shaders: the comparison with the float64 reference must detect each. (Those planted in the reference
+//! itself are for `make mutants`, which changes the Rust sources.)
 
 use std::sync::OnceLock;
 

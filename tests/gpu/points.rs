@@ -1,4 +1,4 @@
-//! Points: what pixels see and where texels lie, for methods that find the light at points.
+//! Points: the points seen by pixels and the positions of texels, for methods that compute the light at points.
 
 use caustica::scene::LayerName;
 use caustica::stages::points::Point;

@@ -1,5 +1,5 @@
-//! What holds for every scene within the documented ranges: random ones, the same every time. `CAUSTICA_PROPERTY_CASES` says how
-//! many, `CAUSTICA_PROPERTY_SEED` that it is only one; a failure prints the scene.
+//! Properties of every scene within the documented ranges, tested with reproducible random scenes. `CAUSTICA_PROPERTY_CASES` is
+//! their number; `CAUSTICA_PROPERTY_SEED` selects a single one. A failure prints the scene.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -16,12 +16,13 @@ use super::harness::{renderer, try_render};
 
 /// Most that an energy account may be open by, where planes do not place the light.
 const CLOSURE: f64 = 1e-5;
-/// One scene in so many is rendered again.
+/// One in this number of scenes is rendered again.
 const AGAIN: u64 = 8;
 /// Least share of the scenes that must be rendered, not refused: else the generator asks for nonsense.
 const RENDERED: f64 = 0.8;
-/// Scenes that once failed: unresolved parts of beams as wide as the floor's map, which one invocation cannot lay alone; beams of a low sun
-/// too small for the account of their workgroup; and footprints 2000 and 70 times longer than wide, whose texels took more than there was.
+/// Scenes that once failed: unresolved pieces of beams as wide as the floor's map, which one invocation cannot deposit alone;
+/// beams of a low sun too small for the account of their workgroup; and footprints 2000 and 70 times longer than wide, whose
+/// texels took more than there was.
 const ONCE_FAILED: [u64; 4] = [219, 422, 600, 760];
 
 /// SplitMix64 (Steele, Lea, Flood 2014): every seed gives another stream.

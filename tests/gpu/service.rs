@@ -1,4 +1,4 @@
-//! The service with the real renderer: pictures, caches, and that no input does harm.
+//! The service with the real renderer: pictures, caches, and harmful inputs.
 
 use std::time::Duration;
 
@@ -333,7 +333,7 @@ async fn bad_meshes_are_refused_and_do_no_harm() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn odd_meshes_are_mended_and_drawn() {
+async fn odd_meshes_are_repaired_and_drawn() {
     let service = default_service().await;
     // A face without area is left out with a warning; a library elsewhere on the disk is never read.
     let flat_face = format!("{OBJ}v 2 0 0\nv 3 0 0\nf 1 5 6\n");

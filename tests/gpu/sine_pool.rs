@@ -1,4 +1,4 @@
-//! The sine pool against the float64 reference: the error at each number of cells, and how fast it falls.
+//! The sine pool against the float64 reference: the error at each number of cells, and its order of convergence.
 
 use caustica::accuracy::{convergence_order, metrics};
 use caustica::reference::ReferenceMap;

@@ -1,4 +1,4 @@
-//! Beams that straddle receivers: halved where they do, they give sharper shadows, the same bytes every time, and lose nothing.
+//! Splitting of beams that straddle receivers: it sharpens shadows, gives the same bytes every time, and loses no light.
 
 use caustica::accuracy::metrics;
 use caustica::reference::{self, ReferenceSettings};
@@ -43,7 +43,7 @@ fn unresolved_share(map: &Map) -> f64 {
 }
 
 #[test]
-fn every_number_of_halvings_loses_nothing_and_tears_less() {
+fn every_number_of_halvings_loses_nothing_and_leaves_less_unresolved() {
     let mut unresolved = f64::INFINITY;
     for levels in 0..=8 {
         let mut scene = pool(boxes(), 48, levels);
@@ -64,7 +64,7 @@ fn every_number_of_halvings_loses_nothing_and_tears_less() {
 }
 
 #[test]
-fn the_queues_order_does_not_show() {
+fn the_queues_order_does_not_change_the_result() {
     let scene = pool(boxes(), 128, 5);
     let first = Map::of(scene.clone());
     for _ in 0..3 {
@@ -190,7 +190,7 @@ fn chequered() -> Vec<u8> {
 }
 
 #[test]
-fn what_the_queue_cannot_hold_stays_unresolved_and_is_reported() {
+fn pieces_that_the_queue_cannot_hold_are_unresolved_and_reported() {
     let mesh = scene_files::mesh_of(&chequered());
     let scene = pool(
         json!([{ "mesh": mesh.id, "translation_m": [0, -1.5, 0], "scale": 2.0 }]),
@@ -205,7 +205,7 @@ fn what_the_queue_cannot_hold_stays_unresolved_and_is_reported() {
     let said = frame.stats.warnings.iter();
     let said: Vec<_> = said.filter(|w| w.code == "beams_unresolved").collect();
     assert!(said[0].message.contains("queue was full"), "{said:?}");
-    // Which pieces stay unresolved does not depend on the queue's order.
+    // Which pieces are unresolved does not depend on the queue's order.
     let again = harness::render(&resolved);
     assert_eq!(frame.layers, again.layers);
     assert_eq!(frame.stats.energy, again.stats.energy);

@@ -152,7 +152,7 @@ fn bad_and_too_many_settings_are_refused_before_any_time_is_spent() {
 }
 
 #[test]
-fn a_setting_that_does_not_fit_is_left_out_and_said() {
+fn a_setting_that_does_not_fit_is_left_out_and_reported() {
     let scene = small_sine_pool();
     let truth = small_truth();
     let config = RenderConfig {

@@ -1,4 +1,4 @@
-//! What must not matter does not: scale of the light, quarter turns, place in the world, order of adding suns.
+//! Symmetries: scale of the light, quarter turns, position in the world, order of adding suns.
 
 use serde_json::{Value, json};
 
@@ -133,7 +133,7 @@ fn far_from_the_origin_the_map_is_the_same() {
 }
 
 #[test]
-fn late_is_as_good_as_early() {
+fn large_times_are_as_accurate_as_small_ones() {
     // After a whole number of periods the water is where it was.
     let mut scene = pool();
     for wave in scene["water"]["waves"].as_array_mut().unwrap() {

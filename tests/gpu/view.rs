@@ -1,4 +1,4 @@
-//! What the camera sees: radiance, refraction, Snell's window, layers, and which way is up.
+//! Views: radiance, refraction, Snell's window, layers, and orientation.
 
 use caustica::frame::Frame;
 use caustica::physics::fresnel::{fresnel_reflectance, fresnel_transmittance};
@@ -453,7 +453,7 @@ fn along_the_sea(down_m: f64) -> Value {
 }
 
 #[test]
-fn pixels_whose_way_along_the_waves_is_not_followed_to_its_end_are_told() {
+fn pixels_whose_path_along_the_waves_is_not_followed_to_its_end_are_warned_of() {
     let told = |scene: Value| -> Option<u64> {
         let frame = frame(scene);
         let mut warnings = frame.stats.warnings.iter();

@@ -1,4 +1,4 @@
-//! A focus so strong that narrow flux sums wrap: the sun is followed again with wide ones, and nothing is lost.
+//! A focus so strong that narrow flux sums overflow: the light is computed again with wide sums, and nothing is lost.
 
 use caustica::accuracy::metrics::relative_l1;
 use serde_json::{Value, json};
@@ -103,7 +103,7 @@ fn a_coarse_light_that_overflows_narrow_sums_is_done_again() {
 }
 
 #[test]
-fn what_is_recorded_ahead_of_a_look_at_the_sums_gives_the_same() {
+fn commands_recorded_before_the_sums_are_read_give_the_same() {
     let estimating = |mut scene: Value| {
         scene["quality"]["estimate_error"] = json!(true);
         scene

@@ -1,4 +1,4 @@
-//! Each bad request has its status and its problem, and does no harm to the next good one.
+//! Each bad request gets its status and problem, and does not affect the next good one.
 
 use axum::http::Method;
 use caustica::config::Limits;
@@ -40,7 +40,7 @@ async fn an_empty_body() {
 }
 
 #[tokio::test]
-async fn a_scene_that_is_no_object() {
+async fn a_scene_that_is_not_an_object() {
     refused("[]", ProblemKind::InvalidScene, "").await;
 }
 
@@ -55,7 +55,7 @@ async fn unknown_fields() {
 }
 
 #[tokio::test]
-async fn numbers_that_are_none() {
+async fn values_that_are_not_numbers() {
     let scene = scenes::small_with("/floor/depth_m", json!("NaN"));
     refused(scene, ProblemKind::InvalidScene, "/floor/depth_m").await;
     let scene = scenes::small().to_string().replace("60", "1e400");
@@ -101,7 +101,7 @@ async fn a_mesh_that_is_not_stored() {
 }
 
 #[tokio::test]
-async fn several_findings_are_told_together() {
+async fn several_findings_are_reported_together() {
     let service = Service::start().await;
     let mut scene = scenes::small_with("/floor/depth_m", json!(-2));
     scene["time_s"] = json!(1e300);
@@ -226,7 +226,7 @@ async fn answered(error: RenderError, kind: ProblemKind) -> caustica::http::Prob
 }
 
 #[tokio::test]
-async fn what_facts_refuse_never_reaches_the_gpu_thread() {
+async fn scenes_refused_by_their_facts_never_reach_the_gpu_thread() {
     let service = Service::start().await;
     let mut scene = scenes::small();
     scene["quality"] = json!({ "method": "planes", "target_error": 0.01 });
@@ -266,7 +266,7 @@ async fn errors_of_the_backend() {
 }
 
 #[tokio::test]
-async fn a_defect_is_not_told_in_detail() {
+async fn details_of_a_defect_are_not_reported() {
     let error = RenderError::Gpu(GpuError::Validation("secret label".to_owned()));
     let problem = answered(error, ProblemKind::Internal).await;
     assert!(!problem.detail.contains("secret"));

@@ -1,4 +1,4 @@
-//! The service without a GPU: a backend that does as it is told stands in for the renderer.
+//! The service without a GPU: a scripted backend replaces the renderer.
 //!
 //! | module | question |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! Meshes are stored, listed, found and forgotten.
+//! Meshes are stored, listed, found and deleted.
 
 use std::time::{Duration, Instant};
 
@@ -60,7 +60,7 @@ async fn the_same_bytes_have_the_same_id() {
 }
 
 #[tokio::test]
-async fn an_answer_tells_triangles_and_bounds() {
+async fn an_answer_has_triangles_and_bounds() {
     let service = Service::start().await;
     let info: MeshInfo = upload(&service, OBJ).await.json();
     assert_eq!(info.triangles, 4);
@@ -122,7 +122,7 @@ async fn forgetting_comes_before_the_next_job() {
 }
 
 #[tokio::test]
-async fn what_a_waiting_render_builds_for_a_deleted_mesh_goes_too() {
+async fn maps_that_a_waiting_render_builds_for_a_deleted_mesh_are_freed_too() {
     let service = Service::start().await;
     let info: MeshInfo = upload(&service, OBJ).await.json();
     let path = format!("/v1/meshes/{}", info.id);
@@ -189,7 +189,7 @@ async fn a_mesh_that_is_deleted_while_its_scene_is_prepared_goes_after_the_rende
         between.iter().any(|event| event == "forget the mesh"),
         "{diary:?}"
     );
-    // After that nobody is left who could build anything for it.
+    // After that, no job is left that could build anything for it.
     let before = service.control.count("forget the mesh");
     service.assert_whole().await;
     let after = service.control.count("forget the mesh");
@@ -217,7 +217,7 @@ async fn an_obj_is_the_same_in_a_form_and_alone() {
 }
 
 #[tokio::test]
-async fn forms_that_are_none() {
+async fn bodies_that_are_not_forms() {
     let service = Service::start().await;
     let cases: [&[(&str, &str)]; 4] = [
         &[],
@@ -247,7 +247,7 @@ async fn forms_that_are_none() {
 }
 
 #[tokio::test]
-async fn meshes_that_are_none() {
+async fn bodies_that_are_not_meshes() {
     let service = Service::start().await;
     for (name, obj) in [
         ("empty", ""),

@@ -1,4 +1,4 @@
-//! Queue full, deadline, clients that leave.
+//! Full queue, deadline, clients that disconnect.
 
 use std::time::{Duration, Instant};
 
@@ -109,7 +109,7 @@ async fn a_job_whose_deadline_passes_in_the_queue_never_runs() {
 }
 
 #[tokio::test]
-async fn a_render_whose_deadline_passes_is_told_to_stop() {
+async fn a_render_whose_deadline_passes_is_cancelled() {
     let service = Service::start_queued(hasty(4)).await;
     let running = occupy(&service).await;
     running.await.unwrap().problem(ProblemKind::DeadlinePassed);

@@ -35,7 +35,7 @@ async fn after_a_loss_the_job_runs_again_on_a_new_device() {
 }
 
 #[tokio::test]
-async fn what_caches_have_counted_outlives_their_device() {
+async fn counts_of_caches_outlive_their_device() {
     let service = Service::start().await;
     let cache = |hits, entries| CacheStats {
         hits,
@@ -85,7 +85,7 @@ async fn what_caches_have_counted_outlives_their_device() {
 }
 
 #[tokio::test]
-async fn a_second_loss_is_told_and_recovered_from() {
+async fn a_second_loss_is_reported_and_recovered_from() {
     let service = Service::start().await;
     service.control.script([lost(), lost()]);
     let reply = service.post_json("/v1/render", scenes::small()).await;
@@ -120,7 +120,7 @@ async fn readiness_is_red_while_the_device_is_rebuilt() {
 }
 
 #[tokio::test]
-async fn a_device_lost_in_idleness_is_rebuilt_before_anybody_asks() {
+async fn an_idle_device_that_is_lost_is_rebuilt_before_the_next_request() {
     let service = Service::start().await;
     service
         .control
@@ -132,7 +132,7 @@ async fn a_device_lost_in_idleness_is_rebuilt_before_anybody_asks() {
 }
 
 #[tokio::test]
-async fn a_hang_is_not_tried_again() {
+async fn a_hang_is_not_retried() {
     let service = Service::start().await;
     service
         .control
@@ -157,7 +157,7 @@ async fn a_panic_of_the_backend_is_an_answer_and_no_end() {
 }
 
 #[tokio::test]
-async fn a_failed_rebuild_is_told_and_tried_again() {
+async fn a_failed_rebuild_is_reported_and_retried() {
     let service = Service::start().await;
     service
         .control

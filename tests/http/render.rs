@@ -127,7 +127,7 @@ async fn server_timing_has_every_stage_and_pass() {
 }
 
 #[tokio::test]
-async fn an_image_at_hand_is_not_rendered_again() {
+async fn a_known_image_is_not_rendered_again() {
     let service = Service::start().await;
     let first = service.post_json("/v1/render", scenes::small()).await;
     let tag = first.header("etag").to_owned();

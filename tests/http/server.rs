@@ -143,7 +143,7 @@ async fn a_connection_that_closes_cancels_its_render() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_body_that_breaks_off_is_told() {
+async fn a_body_that_breaks_off_is_reported() {
     let running = run(Duration::ZERO).await;
     let address = running.address;
     let cut = render().replace("content-length: ", "content-length: 9");

@@ -39,7 +39,7 @@ async fn a_draining_service_is_not_ready_and_still_serves() {
 }
 
 #[tokio::test]
-async fn info_tells_adapter_limits_and_words() {
+async fn info_has_adapter_limits_and_words() {
     let limits = Limits {
         max_lights: 3,
         ..Limits::default()

@@ -1,4 +1,4 @@
-//! Uploads that ask for level maps: what is built, what is refused, and that a warm-up that fails takes no mesh along.
+//! Uploads that request level maps: what is built, what is refused, and that the mesh is kept if the warm-up fails.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -41,7 +41,7 @@ async fn failed(service: &Service, reply: &Reply, kind: ProblemKind) -> Problem 
 }
 
 #[tokio::test]
-async fn who_does_not_ask_gets_the_mesh_alone() {
+async fn an_upload_without_warm_gets_the_mesh_only() {
     let service = Service::start().await;
     let reply = upload(&service, "").await;
     assert_eq!(reply.status, 201);
@@ -77,7 +77,7 @@ async fn one_sun_is_warmed_with_the_defaults_of_a_scene() {
         ior: 1.333,
     };
     assert_eq!(service.control.warmed(), [(id.clone(), wanted.clone())]);
-    // Known already, and warmed all the same: the maps may have made way in the meantime.
+    // Stored already, but warmed again: the maps may have been evicted meanwhile.
     let again = upload(&service, "?warm=60,30").await;
     assert_eq!(again.status, 200);
     assert_eq!(again.json::<Uploaded>().warmed.unwrap().len(), 1);
@@ -104,7 +104,7 @@ async fn several_suns_and_all_parameters() {
 #[tokio::test]
 async fn bad_parameters_are_refused_before_anything_is_stored() {
     let service = Service::start().await;
-    // Query, the name that is told, and a word of what is accepted.
+    // Query, the reported name, and a word of what is accepted.
     let cases = [
         ("?warm=0,30", "warm", "above 0"),
         ("?warm=-5,30", "warm", "above 0"),
@@ -152,7 +152,7 @@ async fn bad_parameters_are_refused_before_anything_is_stored() {
 }
 
 #[tokio::test]
-async fn every_bad_parameter_is_told() {
+async fn every_bad_parameter_is_reported() {
     let service = Service::start().await;
     let query = "?warm=-1,0&warm_texels=3&warm_ior=9&sun=1";
     let problem = upload(&service, query)
@@ -165,7 +165,7 @@ async fn every_bad_parameter_is_told() {
             "{name}: {problem:?}"
         );
     }
-    // A long value is not told in full.
+    // A long value is not repeated in full.
     let query = format!("?warm={}", "9".repeat(5000));
     let reply = upload(&service, &query).await;
     reply.problem(ProblemKind::InvalidQuery);
@@ -293,7 +293,7 @@ async fn a_warm_up_that_is_late_costs_no_mesh() {
 }
 
 #[tokio::test]
-async fn a_warm_up_that_takes_too_long_is_told_to_stop() {
+async fn a_warm_up_that_takes_too_long_is_cancelled() {
     let service = Service::start_queued(QueueSettings {
         waiting: 4,
         deadline: Duration::from_millis(500),
@@ -325,7 +325,7 @@ async fn a_client_that_leaves_cancels_its_warm_up() {
 }
 
 #[tokio::test]
-async fn maps_that_do_not_fit_are_told_with_figures() {
+async fn maps_that_do_not_fit_are_reported_with_figures() {
     let service = Service::start().await;
     service
         .control

@@ -1,4 +1,4 @@
-//! A study as a sweep would fill it, made by formulas: errors fall with known orders down to the truth's own error.
+//! A study made by formulas instead of a sweep: errors fall with known orders down to the reference's own error.
 
 use caustica::accuracy::LinearImage;
 use caustica::lab::study::study::{

@@ -1,4 +1,4 @@
-//! Float64 references of scenes, each computed once in a test binary, whichever tests ask for it.
+//! Float64 references of scenes, each computed once per test binary and shared by its tests.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;

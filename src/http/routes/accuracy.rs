@@ -37,7 +37,7 @@ use crate::render::{Prepared, RenderError};
 use crate::scene::parse::{from_value, read_json};
 use crate::scene::{Issue, ResolvedScene, Scene, SceneError};
 
-/// What can be answered, best first on a draw.
+/// Media types of the answer; the first one wins among equals.
 const OFFERED: [&str; 5] = [
     "application/json",
     "text/markdown",
@@ -56,18 +56,19 @@ const FULL_QUEUE_PAUSE: Duration = Duration::from_millis(20);
 pub struct AccuracyRequest {
     /// The scene; its `quality` holds the dials that are not swept.
     pub scene: Scene,
-    /// Fields of `quality`, and dials of the methods, with the values each takes, 1 … 32 per dial. Default: those that matter to the scene.
+    /// Fields of `quality` and dials of methods, each with the values to sweep, 1 … 32 per dial. Default: the dials that matter
+    /// to the scene.
     #[serde(default)]
     #[schema(value_type = BTreeMap<String, Vec<Object>>)]
     pub dials: BTreeMap<String, Vec<Value>>,
-    /// All combinations of the dials instead of one dial at a time. Default false. At most 64 settings in all.
+    /// Whether to sweep all combinations of the dials instead of one dial at a time. Default false. At most 64 settings in all.
     #[serde(default)]
     pub grid: bool,
     /// Timed runs of each setting, 1 … 100. Default 3.
     #[serde(default = "default_runs")]
     #[schema(minimum = 1, maximum = 100)]
     pub runs: u32,
-    /// Relative L1 error that the truth may have by its own estimate, 0.000001 … 0.1. Default 0.005.
+    /// Largest relative L1 error of the float64 reference, by its own estimate, 0.000001 … 0.1. Default 0.005.
     #[serde(default = "default_truth_error")]
     #[schema(minimum = 0.000001, maximum = 0.1)]
     pub truth_error: f64,
@@ -81,7 +82,7 @@ fn default_truth_error() -> f64 {
     5e-3
 }
 
-/// What was found.
+/// The result of a study.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 pub struct AccuracyAnswer {
     /// Errors and costs.
@@ -90,22 +91,22 @@ pub struct AccuracyAnswer {
     pub error_against_time_svg: String,
     /// Convergence of each sweep (SVG), in the order of the sweeps.
     pub convergence_svg: Vec<String>,
-    /// Renders, truth and errors side by side for each sweep (PNG, base64), in the order of the sweeps.
+    /// Renders, reference and errors side by side for each sweep (PNG, base64), in the order of the sweeps.
     pub error_images_base64: Vec<String>,
 }
 
-/// Draws error against time of a scene.
+/// Plots error against time of a scene.
 ///
-/// The float64 reference is computed on the CPU, then each setting of the dials is rendered, compared and timed; other requests
-/// are served in between, so times of a busy service spread. One study at a time. By `Accept`: JSON with tables and plots, the
-/// report as Markdown, the table as CSV, or the plot of error against time as SVG or PNG. All of it has to be done before the
-/// deadline of requests.
+/// The float64 reference is computed on the CPU. Then each setting of the dials is rendered, compared and timed. Other requests
+/// are served in between, so the times vary more on a busy service. Only one study runs at a time. `Accept` selects the answer:
+/// JSON with tables and plots, the report as Markdown, the table as CSV, or the plot of error against time as SVG or PNG. The
+/// whole study has to finish before the deadline of requests.
 #[utoipa::path(
     post, path = "/v1/accuracy", tag = "render",
     request_body(content = AccuracyRequest, description = "Scene and dials.", example = example_request),
     responses(
         (
-            status = OK, description = "What accuracy costs in time.",
+            status = OK, description = "Error against time.",
             content(
                 (AccuracyAnswer = "application/json"), (String = "text/markdown"), (String = "text/csv"),
                 (String = "image/svg+xml"), (super::render::ImageFile = "image/png"),
@@ -132,7 +133,7 @@ pub async fn accuracy(
     let guard = cancel.clone().drop_guard();
     let handle = Handle::current();
     let answer = run_blocking(move || {
-        // Given back when the work has ended, not when the client has left: the thread goes on a little after that.
+        // Released when the work has ended, not when the client has left: the thread runs on for a short time after that.
         let _place = place;
         let found = study(
             &state,
@@ -150,7 +151,7 @@ pub async fn accuracy(
     answer
 }
 
-/// Body to scene, sweep and the truth's error.
+/// Reads the body into scene, sweep and error of the reference.
 fn read(body: &Bytes, state: &AppState) -> Result<(ResolvedScene, SweepSettings, f64), ApiError> {
     let request: AccuracyRequest = from_value(&read_json(body)?).map_err(|issue| SceneError {
         issues: vec![issue],
@@ -199,7 +200,7 @@ fn read(body: &Bytes, state: &AppState) -> Result<(ResolvedScene, SweepSettings,
                 grid: request.grid,
                 runs: request.runs,
             };
-            // Before the truth, which may take minutes.
+            // Check this before the reference is computed, which may take minutes.
             sweep::check(&resolved, &settings, state.limits()).map_err(refused)?;
             Ok((resolved, settings, request.truth_error))
         }
@@ -258,7 +259,7 @@ fn study(
     .map_err(refused)
 }
 
-/// What a study refuses, at its place within the request.
+/// The finding for a refusal of a study, at its place within the request.
 fn refused(error: StudyError<JobError>) -> ApiError {
     match error {
         StudyError::Render(error) => error.into(),
@@ -281,8 +282,7 @@ fn refused(error: StudyError<JobError>) -> ApiError {
     }
 }
 
-/// Renders in between other requests: where the queue is full, the study waits its turn. The thread is the study's own, so that the
-/// scene is prepared on it.
+/// Renders in between other requests; if the queue is full, the study waits. The scene is prepared on the study's own thread.
 async fn one_frame(
     state: &AppState,
     scene: ResolvedScene,
@@ -336,7 +336,7 @@ fn respond(
     })
 }
 
-/// A request for the contract.
+/// The example request of the contract.
 fn example_request() -> Value {
     let scene: Value = serde_json::from_str(include_str!("../../../scenes/sine_pool.json"))
         .expect("a scene of the repository is JSON");

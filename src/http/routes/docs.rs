@@ -1,4 +1,4 @@
-//! `/`, `/openapi.yaml` and `/docs`: nothing here needs any other host.
+//! `/`, `/openapi.yaml` and `/docs`. They load nothing from other hosts.
 
 use axum::Router;
 use axum::http::header;
@@ -9,13 +9,13 @@ use super::super::openapi::yaml;
 use super::super::problem::CommonProblems;
 use super::super::state::AppState;
 
-/// The page; its example scene is the contract's.
+/// The page, with the contract's example scene.
 const PAGE: &str = include_str!("try_it.html");
 
-/// Where [`PAGE`] wants the example scene.
+/// The placeholder of the example scene in [`PAGE`].
 const EXAMPLE_MARK: &str = "{{example_scene}}";
 
-/// What the page may load: itself, and pictures that it made.
+/// Content security policy: the page loads only itself and the pictures it has made.
 const PAGE_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src 'self'; \
                            img-src blob: data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -25,7 +25,7 @@ const PAGE_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script
     responses((status = OK, description = "HTML.", body = String, content_type = "text/html"), CommonProblems)
 )]
 pub async fn page() -> impl IntoResponse {
-    // The scene holds no `<` and no `&` that would mean something in a text area.
+    // The scene contains no `<` or `&`, so it needs no escaping in a text area.
     let html = PAGE.replace(EXAMPLE_MARK, super::render::EXAMPLE_SCENE);
     ([(header::CONTENT_SECURITY_POLICY, PAGE_POLICY)], Html(html))
 }
@@ -39,7 +39,7 @@ pub async fn contract() -> impl IntoResponse {
     ([(header::CONTENT_TYPE, "application/yaml")], yaml())
 }
 
-/// A reader for the contract, from files inside the program.
+/// An HTML reference of the contract, from files built into the program.
 pub(in super::super) fn swagger() -> Router<AppState> {
     SwaggerUi::new("/docs")
         .config(Config::from("/openapi.yaml").validator_url("none"))

@@ -21,21 +21,21 @@ pub struct Alive {
 /// The service takes work.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Ready {
-    /// Whether a request sent now would find a place in the queue. A full queue does not make the service unready.
+    /// Whether the queue has a place for a request sent now. A full queue does not make the service unready.
     pub would_accept_work: bool,
     /// Jobs that wait or run.
     pub queue_depth: usize,
     /// Jobs that may wait or run.
     pub queue_capacity: usize,
-    /// Where it runs.
+    /// The adapter it runs on.
     pub adapter: Option<AdapterStats>,
-    /// How far it agrees with float64 physics.
+    /// Result of the self-check (GPU against float64 physics).
     pub self_check: Option<SelfCheck>,
 }
 
 /// Whether the process is alive.
 ///
-/// Says nothing about the GPU: a process that waits for its device must not be restarted for it.
+/// It does not depend on the GPU: a process that waits for its device must not be restarted.
 #[utoipa::path(
     get, path = "/healthz", tag = "service",
     responses((status = OK, description = "Alive.", body = Alive), CommonProblems)

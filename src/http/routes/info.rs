@@ -14,16 +14,16 @@ use crate::methods;
 use crate::scene::{Dispersion, ExrPixel, ImageFormat, LayerName, MethodChoice, ToneCurve};
 use crate::stats::AdapterStats;
 
-/// What runs here and what it takes.
+/// Version, adapter and limits of the service.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Info {
     /// Program version.
     pub version: String,
-    /// Where it runs; absent until an adapter is open.
+    /// The adapter; absent until one is open.
     pub adapter: Option<AdapterStats>,
-    /// Whether a CPU does the work; absent until an adapter is open.
+    /// Whether the adapter is a software driver on the CPU; absent until one is open.
     pub software: Option<bool>,
-    /// Most that a request may ask for.
+    /// Limits of a request.
     pub limits: Limits,
     /// GPU memory that one frame may hold, bytes.
     pub memory_budget_bytes: u64,
@@ -33,11 +33,11 @@ pub struct Info {
     pub queue: usize,
     /// Time from arrival after which a request is answered 503, s.
     pub deadline_s: f64,
-    /// Words that the fields of a scene accept, by the name of their schema in `/openapi.yaml`.
+    /// Accepted words of the scene's fields, by the name of their schema in `/openapi.yaml`.
     pub features: BTreeMap<String, Vec<String>>,
 }
 
-/// Tells what runs here and what it takes.
+/// Version, adapter, limits and accepted words.
 #[utoipa::path(
     get, path = "/v1/info", tag = "service",
     responses((status = OK, description = "Version, adapter, limits, features.", body = Info), CommonProblems)
@@ -59,7 +59,7 @@ pub async fn info(State(state): State<AppState>) -> Json<Info> {
     })
 }
 
-/// The words of the scene's enumerations, taken from their schemas so that they cannot fall behind.
+/// The words of the scene's enumerations, read from their schemas so that they are always up to date.
 fn features() -> BTreeMap<String, Vec<String>> {
     [
         words::<Dispersion>(),

@@ -1,4 +1,4 @@
-//! `/v1/meshes`: upload, list, inspect, forget.
+//! `/v1/meshes`: upload, list, inspect, delete.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -24,7 +24,7 @@ use crate::mesh::{Mesh, MeshInfo};
 const MESH_TYPES: &str = "text/plain, model/obj or application/octet-stream with an OBJ, or multipart/form-data with the \
                           parts `obj` and, if there are materials, `mtl`";
 
-/// Smallest OBJ worth showing.
+/// A small example OBJ.
 const EXAMPLE_OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n";
 
 /// All stored meshes.
@@ -34,18 +34,18 @@ pub struct MeshList {
     pub meshes: Vec<MeshInfo>,
 }
 
-/// A mesh that is stored now, and what was done for it besides.
+/// A stored mesh, and the level maps built for it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Uploaded {
     /// The mesh.
     #[serde(flatten)]
     pub mesh: MeshInfo,
-    /// The level maps that `warm` asked for, ready in the order of their suns; empty when they could not be built. Absent unless
-    /// asked for.
+    /// The level maps requested by `warm`, in the order of their suns; empty if they could not be built. Absent if none were
+    /// requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warmed: Option<Vec<WarmedMap>>,
-    /// Why the level maps could not be built, as a render would answer it. The mesh is stored all the same, and frames build what
-    /// they need; the same upload again tries once more.
+    /// Why the level maps could not be built: the problem that a render would answer. The mesh is stored nevertheless, and frames
+    /// build the maps they need. The same upload can be repeated to try again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warm_problem: Option<Problem>,
 }
@@ -60,7 +60,7 @@ pub struct MeshForm {
     /// The Wavefront OBJ, in metres.
     #[schema(content_media_type = "model/obj")]
     obj: String,
-    /// The MTL that it names; only `Kd` is used.
+    /// The MTL file named in the OBJ; only `Kd` is used.
     #[schema(content_media_type = "model/mtl")]
     mtl: Option<String>,
 }
@@ -68,7 +68,7 @@ pub struct MeshForm {
 /// Lists the stored meshes.
 #[utoipa::path(
     get, path = "/v1/meshes", tag = "meshes",
-    responses((status = OK, description = "By id.", body = MeshList), CommonProblems)
+    responses((status = OK, description = "All meshes, sorted by id.", body = MeshList), CommonProblems)
 )]
 pub async fn list(State(state): State<AppState>) -> Json<MeshList> {
     Json(MeshList {
@@ -78,12 +78,12 @@ pub async fn list(State(state): State<AppState>) -> Json<MeshList> {
 
 /// Stores a mesh.
 ///
-/// The id is a hash of the uploaded bytes: the same bytes get the same id, here and everywhere. Meshes live until they are
-/// deleted or the process ends.
+/// The id is a hash of the uploaded bytes, so the same bytes have the same id on every installation. Meshes are kept until they
+/// are deleted or the process ends.
 ///
-/// With `warm` the level maps for some suns are built before the answer, so that the first frame under one of them finds its own.
-/// That waits for the GPU like a render. Where it cannot be done the mesh is stored nonetheless and the answer is the same but
-/// for `warm_problem`, which says why (for instance `urn:caustica:problem:queue-full`, `…:over-budget`).
+/// With `warm`, the level maps for the given suns are built before the answer, so that the first frame under one of these suns
+/// finds them in the cache. This waits for the GPU like a render. If it fails, the mesh is stored nevertheless, and
+/// `warm_problem` in the answer says why (for instance `urn:caustica:problem:queue-full`, `…:over-budget`).
 #[utoipa::path(
     post, path = "/v1/meshes", tag = "meshes",
     params(WarmParameters),
@@ -100,7 +100,7 @@ pub async fn list(State(state): State<AppState>) -> Json<MeshList> {
     ),
     responses(
         (status = CREATED, description = "Stored.", body = Uploaded, headers(("location", description = "Its address."))),
-        (status = OK, description = "Known already.", body = Uploaded, headers(("location", description = "Its address."))),
+        (status = OK, description = "Stored already.", body = Uploaded, headers(("location", description = "Its address."))),
         UploadProblems,
     )
 )]
@@ -162,11 +162,11 @@ async fn warm(
     Ok(state.queue().warm(mesh, wanted, arrival).await?)
 }
 
-/// Tells about one mesh.
+/// Describes one mesh.
 #[utoipa::path(
     get, path = "/v1/meshes/{id}", tag = "meshes",
     params(("id" = String, Path, description = "`blake3:…`, from the upload.")),
-    responses((status = OK, description = "Without its triangles.", body = MeshInfo), MeshProblems)
+    responses((status = OK, description = "The mesh, without its triangles.", body = MeshInfo), MeshProblems)
 )]
 pub async fn inspect(
     State(state): State<AppState>,
@@ -178,9 +178,9 @@ pub async fn inspect(
     }
 }
 
-/// Forgets a mesh, and what is cached for it.
+/// Deletes a mesh and what is cached for it.
 ///
-/// Renders that were asked for before keep it until they end.
+/// Renders requested before keep it until they end.
 #[utoipa::path(
     delete, path = "/v1/meshes/{id}", tag = "meshes",
     params(("id" = String, Path, description = "`blake3:…`, from the upload.")),

@@ -1,4 +1,4 @@
-//! `POST /v1/plan`: what a scene would run, and why; nothing runs.
+//! `POST /v1/plan`: the passes that a scene would run, and why.
 
 use axum::extract::State;
 use axum::{Extension, Json};
@@ -14,8 +14,8 @@ use crate::scene::Scene;
 
 /// Plans a scene.
 ///
-/// The plan knows what is cached now, so a plan after a render may be shorter. Where `quality` asks for an error or a time, the
-/// scene's light is looked at; else nothing runs.
+/// The plan takes into account what is cached now, so a plan after a render may be shorter. If `quality` requests an error or a
+/// time, trial renders of the light run to choose the dials; otherwise nothing runs.
 #[utoipa::path(
     post, path = "/v1/plan", tag = "render",
     request_body(content = Scene, description = "The scene.", example = example_scene),

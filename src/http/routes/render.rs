@@ -1,4 +1,4 @@
-//! `POST /v1/render`: a scene in, a picture out.
+//! `POST /v1/render`: renders a scene to a picture.
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -40,7 +40,7 @@ pub struct ImageFile(pub Vec<u8>);
 pub struct RenderAnswer {
     /// The file.
     pub image: InlineImage,
-    /// What it cost and how far to trust it.
+    /// Cost, energy, estimated accuracy and warnings.
     pub stats: Stats,
 }
 
@@ -56,28 +56,28 @@ pub struct InlineImage {
 
 /// Renders a scene.
 ///
-/// Equal scenes give equal bytes on the same adapter and version, so the image carries a strong `ETag`; with it in
-/// `If-None-Match` the answer is 304 and nothing runs. With `Accept: application/json` image and stats come in one. A client
-/// that leaves cancels its render.
+/// Equal scenes give equal bytes on the same adapter and version, so the image has a strong `ETag`. If `If-None-Match` lists it,
+/// the answer is 304 and nothing runs. With `Accept: application/json`, one answer has both image and stats. A render is
+/// cancelled when its client disconnects.
 #[utoipa::path(
     post, path = "/v1/render", tag = "render",
     params(
-        ("if-none-match" = Option<String>, Header, description = "`ETag` of an image at hand."),
+        ("if-none-match" = Option<String>, Header, description = "`ETag` of an image that the client has."),
     ),
     request_body(content = Scene, description = "The scene.", example = example_scene),
     responses(
         (
             status = OK, description = "The picture.",
             headers(
-                ("etag", description = "Hash of the canonical scene, the program's version and the adapter, and, where `quality` asks for an error or a time, of what the dials are chosen by (calibration, memory and level-map budget); images only."),
+                ("etag", description = "Hash of the canonical scene, the program's version and the adapter; if `quality` requests an error or a time, also of what determines the chosen dials (calibration, memory and level-map budget). Images only."),
                 ("server-timing", description = "ms: queue, plan, upload, gpu, readback, encode, total, and `pass-…` for each pass."),
                 ("x-caustica-scene-hash", description = "`blake3:…` of the canonical scene."),
             ),
             content((ImageFile = "image/png"), (ImageFile = "image/x-exr"), (RenderAnswer = "application/json")),
         ),
         (
-            status = NOT_MODIFIED, description = "The image at hand is the one this scene gives.",
-            headers(("etag", description = "Of the image at hand.")),
+            status = NOT_MODIFIED, description = "The client's image is that of this scene.",
+            headers(("etag", description = "Of the client's image.")),
         ),
         RenderProblems,
     )
@@ -140,7 +140,7 @@ pub async fn render(
     })
 }
 
-/// Writes the file, away from the GPU thread, and completes the stats.
+/// Encodes the file, not on the GPU thread, and completes the stats.
 fn encode_frame(
     mut frame: Frame,
     encoding: &Encoding,
@@ -165,7 +165,8 @@ fn inline(encoded: &Encoded, stats: Stats) -> RenderAnswer {
     }
 }
 
-/// A strong entity tag: whatever can change the bytes is in it. `dial_basis` is what the dials are chosen by, where they are.
+/// A strong entity tag: a hash of everything that can change the bytes. `dial_basis` is given if the dials are chosen by the
+/// program.
 fn entity_tag(scene_hash: &str, adapter: &AdapterStats, dial_basis: Option<&str>) -> String {
     let parts = [
         scene_hash,
@@ -219,7 +220,7 @@ fn server_timing(stats: &Stats) -> String {
     text
 }
 
-/// A scene to start from, as its author wrote it.
+/// The example scene, as its author wrote it.
 pub const EXAMPLE_SCENE: &str = include_str!("../../../scenes/pool.json");
 
 /// [`EXAMPLE_SCENE`] for the contract.

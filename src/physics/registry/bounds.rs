@@ -1,7 +1,7 @@
-//! How far f32 may be off where that depends on the arguments: the roundings of each step, carried to the result.
+//! Tolerances that depend on the arguments: the roundings of each step, propagated to the result.
 //!
-//! WGSL rounds sums and products correctly (u = 2⁻²⁴ relative), lets a quotient be 2.5 ulp off (5 u), an inverse square root
-//! 2 ulp and a square root by way of it 4.5 ulp (9 u). Errors are first order, and each bound counts a few u more than it needs.
+//! WGSL rounds sums and products correctly (u = 2⁻²⁴ relative), lets a quotient be 2.5 ulp off (5 u), an inverse square root 2
+//! ulp and a square root by way of it 4.5 ulp (9 u). Errors are propagated to first order; each bound has a few u to spare.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use super::super::refraction::refracted_square;
 /// Half the distance from 1 to its upper neighbour.
 pub(super) const U: f64 = 1.0 / 16_777_216.0;
 
-/// 2⁻¹²⁶: numbers below it may be taken for 0.
+/// 2⁻¹²⁶: numbers below it may be flushed to 0.
 pub(super) const SMALLEST_NORMAL: f64 = f32::MIN_POSITIVE as f64;
 
 /// No part depends on the arguments.
@@ -71,7 +71,7 @@ pub(super) fn transmittance(a: &[f64]) -> f64 {
     2.0 * c * both * (off + 32.0 * U * g) + SMALLEST_NORMAL
 }
 
-/// What the square of η cos θ_t is off in a refraction whose cosine comes from two rounded unit vectors.
+/// Error of the square of η cos θ_t in a refraction whose cosine comes from two rounded unit vectors.
 pub(super) fn square_of_vectors(c: f64, eta: f64) -> f64 {
     square(&[c, eta]) + 32.0 * U * c + 256.0 * U * U
 }
@@ -91,7 +91,7 @@ pub(super) fn transmission(a: &[f64]) -> f64 {
     exponential(a[0] * a[1], 1.0)
 }
 
-/// Of 1 − e^(−c d): where the product is large enough for it, what the exponential is off.
+/// Of 1 − e^(−c d): for large enough products, the error of the exponential.
 pub(super) fn extinction(a: &[f64]) -> f64 {
     let x = a[0] * a[1];
     // The border in f32 is that of a rounded product.
@@ -102,20 +102,20 @@ pub(super) fn extinction(a: &[f64]) -> f64 {
     }
 }
 
-/// Of e^(−x) for an x of so many roundings.
+/// Of e^(−x) for an x with the given number of roundings.
 fn exponential(x: f64, roundings: f64) -> f64 {
     (-x).exp() * (2.0 * U * (3.0 + 2.0 * x) + roundings * U * x) + SMALLEST_NORMAL
 }
 
-/// Of a tent's share for (t, and its three places in any order).
+/// Of a tent's share for (t, and the tent's three positions in any order).
 pub(super) fn tent(a: &[f64]) -> f64 {
     let low = a[1].min(a[2]).min(a[3]);
     let high = a[1].max(a[2]).max(a[3]);
-    // Sides below the smallest normal number are taken to have its length.
+    // Sides shorter than the smallest normal number are treated as having that length.
     (4.0 * SMALLEST_NORMAL / (high - low)).min(1.0)
 }
 
-/// Of a tent's share for (two heights, and its three places in any order).
+/// Of a tent's share for (two heights, and the tent's three positions in any order).
 pub(super) fn tent_piece(a: &[f64]) -> f64 {
     2.0 * tent(&a[1..])
 }
@@ -134,12 +134,12 @@ pub(super) fn sky(a: &[f64]) -> f64 {
         + SMALLEST_NORMAL
 }
 
-/// Of an angle whose coordinates may each lose what is below the smallest normal number.
+/// Of an angle whose coordinates may each be flushed below the smallest normal number.
 pub(super) fn angle(a: &[f64]) -> f64 {
     (4.0 * SMALLEST_NORMAL / a[0].hypot(a[1])).min(std::f64::consts::TAU)
 }
 
-/// A triangle's triple product and sum, and how far each is off.
+/// A triangle's triple product and sum, and the error of each.
 fn solid_angle_parts(a: DVec3, ab: DVec3, ac: DVec3) -> [f64; 4] {
     let (b, c) = (a + ab, a + ac);
     let size = a.length() * b.length() * c.length();
@@ -152,7 +152,8 @@ fn solid_angle_parts(a: DVec3, ab: DVec3, ac: DVec3) -> [f64; 4] {
     [triple, sum, triple_off, sum_off]
 }
 
-/// Whether roundings decide the solid angle: where the origin lies in the triangle it jumps from −2π to 2π, and on an edge it may be any.
+/// Whether rounding decides the solid angle: if the origin lies in the triangle, the angle jumps between −2π and 2π; on an edge
+/// it may have any value.
 pub(super) fn solid_angle_is_open(a: DVec3, ab: DVec3, ac: DVec3) -> bool {
     let [triple, sum, triple_off, sum_off] = solid_angle_parts(a, ab, ac);
     let is_within = sum <= sum_off && triple.abs() <= triple_off;

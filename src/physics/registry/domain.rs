@@ -1,4 +1,4 @@
-//! What arguments a twin is tried with.
+//! The arguments a twin is tested with.
 
 use super::Twin;
 
@@ -7,8 +7,8 @@ use super::Twin;
 pub enum Spacing {
     /// Evenly.
     Even,
-    /// As many in each decade between these magnitudes, of both signs where the domain has both; what lies beyond them, up to the
-    /// ends, is for edges.
+    /// The same number in each decade between these magnitudes, with both signs if the domain has both. Values outside these
+    /// magnitudes are covered by edges.
     Decades(f64, f64),
 }
 
@@ -21,12 +21,12 @@ pub struct Domain {
     pub high: f64,
     /// How the values between are spread.
     pub spacing: Spacing,
-    /// Values that are tried besides, alone and together with those of other arguments.
+    /// Special values to test in addition, alone and combined with those of other arguments.
     pub edges: &'static [f64],
 }
 
 impl Domain {
-    /// The value at `share` (0 … 1) of the way.
+    /// The value at `share` (0 … 1) of the domain.
     fn at(&self, share: f64) -> f64 {
         match self.spacing {
             Spacing::Even => self.low + share * (self.high - self.low),
@@ -42,11 +42,11 @@ impl Domain {
     }
 }
 
-/// Argument lists that cover a twin's domain, 2 `count` or 3 `count`: a low-discrepancy filling; the same with one argument on an
-/// edge; and edges in all arguments, every combination of them where `count` is enough.
+/// 2 to 3 times `count` argument lists that cover a twin's domain: a low-discrepancy sequence; the same with one argument on an
+/// edge; and edges in all arguments, in every combination if `count` is large enough.
 pub fn samples(twin: &Twin, count: usize) -> Vec<[f64; 8]> {
     let mut all = Vec::with_capacity(3 * count);
-    // The golden ratio's generalisation (Roberts 2018): one irrational step per argument.
+    // The R sequence (Roberts 2018), which generalises the golden ratio: one irrational step per argument.
     let mut g: f64 = 1.5;
     for _ in 0..32 {
         g = (1.0 + g).powf(1.0 / (twin.domain.len() as f64 + 1.0));
@@ -80,7 +80,7 @@ pub fn samples(twin: &Twin, count: usize) -> Vec<[f64; 8]> {
         args[k] = edges[(index / twin.domain.len()) % edges.len()];
         all.push(args);
     }
-    // What f32 cannot hold is not asked of it.
+    // Round the arguments to f32.
     for args in &mut all {
         for a in args {
             *a = f64::from(*a as f32);

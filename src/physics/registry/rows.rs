@@ -238,7 +238,7 @@ const SQUARE: Domain = even(
     ],
 );
 
-/// A scalar in the first place.
+/// A scalar in the first component.
 const fn scalar(value: f64) -> Option<[f64; 4]> {
     Some([value, 0.0, 0.0, 0.0])
 }
@@ -273,7 +273,7 @@ pub const TWINS: [Twin; 20] = [
         domain: &[DEPTH, DEPTH, PLANE_COUNT, DEPTH],
         call: "vec4f(plane_of_depth(a[0], a[1], a[2], a[3]), 0.0, 0.0, 0.0)",
         original: |a| {
-            // At the border of two intervals either is right: eight roundings of the place in half intervals.
+            // At the border of two intervals either plane is right: eight roundings of the position in half intervals.
             let halves = (a[3] - a[0]) / (a[1] - a[0]) * (2.0 * (a[2] - 1.0));
             let is_clear = (halves - halves.round()).abs() > 8.0 * U * halves.abs();
             let is_exact = halves == 0.0 || a[1] <= a[0];
@@ -612,7 +612,7 @@ pub const TWINS: [Twin; 20] = [
     },
 ];
 
-/// Corner and two sides from eight arguments; one serves twice.
+/// A corner and two sides from eight arguments; one argument is used twice.
 fn triangle(a: &[f64]) -> [DVec3; 3] {
     [
         DVec3::new(a[0], a[1], a[2]),
@@ -621,7 +621,7 @@ fn triangle(a: &[f64]) -> [DVec3; 3] {
     ]
 }
 
-/// WGSL of the helper that calls use to make an incident direction; it is part of the test, not of the library.
+/// WGSL of the helper with which `call` makes an incident direction; part of the test, not of the library.
 pub const CALL_PRELUDE: &str = "
 fn incident(cos_i: f32, turns: f32, normal: vec3f) -> vec3f {
     let helper = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(normal.x) > 0.5);

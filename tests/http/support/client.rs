@@ -1,4 +1,4 @@
-//! Answers, and what every problem has to look like.
+//! Answers, and checks that hold for every problem.
 
 use axum::body::to_bytes;
 use axum::http::{HeaderMap, Method, Response};

@@ -1,4 +1,4 @@
-//! A backend that does as it is told and remembers what it was asked.
+//! A scripted backend that records its calls.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex};

@@ -1,5 +1,5 @@
-//! What the tests share: a backend that does as it is told (`fake`), a service around it (`service`), requests and answers
-//! (`client`), and inputs (`scenes`).
+//! What the tests share: a scripted backend (`fake`), a service around it (`service`), requests and answers (`client`), and
+//! inputs (`scenes`).
 
 pub(crate) mod client;
 pub(crate) mod fake;

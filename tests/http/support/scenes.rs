@@ -1,4 +1,4 @@
-//! Inputs.
+//! Scenes and meshes for requests.
 
 use serde_json::{Value, json};
 
