@@ -74,10 +74,13 @@ pub fn in_words(plan: &Plan) -> String {
         .absent
         .iter()
         .map(|pass| vec![pass.name.clone(), pass.reason.clone()]);
-    let slots = plan
-        .slots
-        .iter()
-        .map(|slot| vec![slot.name.clone(), bytes(slot.bytes), slot.holds.clone()]);
+    let slots = plan.slots.iter().map(|slot| {
+        let mut holds = slot.holds.clone();
+        if let Some(owner) = &slot.shares {
+            let _ = write!(holds, " (in the memory of {owner})");
+        }
+        vec![slot.name.clone(), bytes(slot.bytes), holds]
+    });
     let chosen = plan.chosen.iter().flat_map(dials);
     let sections: [(&str, Vec<Vec<String>>); 4] = [
         ("Chosen dials", chosen.collect()),
