@@ -1,4 +1,4 @@
-//! The thesis's experiment without an adapter: what may be asked for, and the files made of what was found.
+//! The thesis's experiment without an adapter: accepted requests, and the files of results.
 
 use caustica::cli::experiment::{meshes, planes};
 use caustica::lab::experiment::{
@@ -33,11 +33,7 @@ fn shapes_are_named_or_all() {
 }
 
 #[test]
-<<<<<<< HEAD
-fn techniques_differ_only_in_the_method() {
-=======
 fn methods_of_placing_differ_in_nothing_else() {
->>>>>>> l2
     let base = scene("box", 32, 64).unwrap();
     let quality = |technique: Technique| technique.of(&base).scene.quality;
     let uniform = quality(Technique::Uniform(9));
@@ -147,11 +143,7 @@ fn the_page_sets_our_ratios_beside_the_thesis() {
 }
 
 #[test]
-<<<<<<< HEAD
-fn the_table_has_a_row_for_each_technique() {
-=======
 fn the_table_has_a_row_for_each_method() {
->>>>>>> l2
     let text = to_csv(&found());
     let mut lines = text.lines();
     let columns = lines.next().unwrap().split(',').count();

@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 //! Choosing dials: from probes to cells, from a budget to cells, and the calibration behind it.
-=======
-//! Choosing dials: from trial renders to cells, from a budget to cells, and the calibration behind it.
->>>>>>> l2
 
 use std::convert::Infallible;
 
@@ -45,11 +41,7 @@ fn the_fewest_cells_under_the_target_are_chosen() {
 }
 
 #[test]
-<<<<<<< HEAD
 fn probes_stay_cheaper_than_the_frame() {
-=======
-fn trial_renders_stay_cheaper_than_the_frame() {
->>>>>>> l2
     let mut probed = Vec::new();
     let mut error = scene(0.1, 2.0);
     let choice = choose::for_error(0.001, &map(2048), |cells| {
@@ -115,11 +107,7 @@ fn between(measured: &Measured, cells: u32) -> (f64, f64) {
 }
 
 #[test]
-<<<<<<< HEAD
 fn coarse_probes_that_underestimate_their_error_are_not_trusted() {
-=======
-fn coarse_trial_renders_that_underestimate_their_error_are_not_trusted() {
->>>>>>> l2
     for (measured, is_view, targets) in [
         (STEEP_POOL, false, [0.5, 0.25, 0.12, 0.06, 0.01]),
         (TEAPOT_FLOOR, false, [0.5, 0.25, 0.12, 0.06, 0.01]),
@@ -202,11 +190,7 @@ fn darkness_needs_the_fewest() {
 }
 
 #[test]
-<<<<<<< HEAD
 fn an_error_of_a_probe_is_passed_on() {
-=======
-fn an_error_of_a_trial_render_is_passed_on() {
->>>>>>> l2
     assert_eq!(
         choose::for_error(0.01, &map(2048), |_| Err("lost")),
         Err("lost")
