@@ -37,6 +37,13 @@ impl ShaderSources {
         self.files.get(path).map(AsRef::as_ref)
     }
 
+    /// The same sources with one more file.
+    #[must_use]
+    pub fn with_file(mut self, path: &'static str, text: &'static str) -> Self {
+        self.files.insert(path, Cow::Borrowed(text));
+        self
+    }
+
     /// The same sources with `from` replaced by `to` in one file: for tests that break a formula on purpose.
     pub fn with_replacement(mut self, path: &str, from: &str, to: &str) -> Option<Self> {
         let text = self.files.get_mut(path)?;

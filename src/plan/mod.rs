@@ -344,16 +344,20 @@ pub fn differences_beside(facts: &SceneFacts) -> u64 {
 pub fn readback_bytes(facts: &SceneFacts) -> u64 {
     let beside = differences_beside(facts);
     beside
-        + match facts.output.camera {
-            Some(camera) => {
-                let rows = band_rows(camera.width, camera.height);
+        + match size(facts) {
+            Some([width, height]) if is_made_at_points(facts) => {
                 let layers = awaited_layers(facts).into_iter();
                 let texel = layers.map(bytes_per_point).max().unwrap_or(0);
-                texel * u64::from(camera.width) * u64::from(rows)
+                texel * u64::from(width) * u64::from(band_rows(width, height))
             }
-            None if facts.lights.beam_sets.is_empty() => 0,
-            None => 12 * MapLayout::of(facts).irradiance_texels(),
+            _ if facts.lights.beam_sets.is_empty() => 0,
+            _ => 12 * MapLayout::of(facts).irradiance_texels(),
         }
+}
+
+/// Whether the output is read from points, band by band: a view, and a map of a method that finds the light at points.
+pub fn is_made_at_points(facts: &SceneFacts) -> bool {
+    facts.output.camera.is_some() || facts.method.product == Product::PointIrradiance
 }
 
 /// Bytes per pixel of a slot that layers are read from.

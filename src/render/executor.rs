@@ -12,8 +12,8 @@ use super::commands::{Recording, steps_of};
 use super::comparison::{Comparison, ComparisonPasses};
 use super::geometry::Geometry;
 use super::{RenderError, Renderer, RunResult, check_cancelled, collect, ms_since, timed};
+use crate::facts::SceneFacts;
 use crate::facts::placement::{LevelBox, LevelMapKey};
-use crate::facts::{Product, SceneFacts};
 use crate::gpu::{GpuError, readback};
 use crate::graph::plan::Phase;
 use crate::graph::{BandRun, BeamSetRun, Scope};
@@ -99,8 +99,7 @@ impl Renderer {
         if plan.wanted == Wanted::Points {
             self.run_points(job, slots, &mut result)?;
         } else if plan.wanted == Wanted::Frame {
-            let at_points = facts.method.product == Product::PointIrradiance;
-            if facts.output.camera.is_some() || at_points {
+            if plan::is_made_at_points(facts) {
                 self.run_bands(job, slots, &mut result)?;
             } else {
                 self.collect_map(facts, slots, &mut result)?;

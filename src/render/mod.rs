@@ -31,6 +31,7 @@ use crate::graph::{PlanError, Scope};
 use crate::methods;
 use crate::plan::{self, Cached, FramePlan, Plan, Wanted};
 use crate::scene::{ResolvedScene, SceneError};
+use crate::stages::Pass;
 use crate::stages::objects::GEOMETRY;
 use crate::stages::points::Point;
 use crate::stats::{
@@ -249,7 +250,7 @@ impl Renderer {
         let tuned = self.tuned(prepared, cancel)?;
         let rendered = tuned.as_ref().map_or(prepared, |tuned| &tuned.rung);
         let (resolved, facts) = (rendered.resolved(), rendered.facts());
-        let plan = self.plan_in_budget(facts, Wanted::Frame)?;
+        let plan = self.plan_in_budget(rendered.passes(), facts, Wanted::Frame)?;
         let plan_ms = prepared.took_ms() + ms_since(started);
         let cache_before = self.level_maps.stats();
         let ran = Instant::now();
@@ -340,10 +341,11 @@ impl Renderer {
     /// not depend on the cache.
     fn plan_in_budget(
         &mut self,
+        passes: &[&'static Pass],
         facts: &SceneFacts,
         wanted: Wanted,
     ) -> Result<FramePlan, RenderError> {
-        let plan = plan::plan_scene(facts, wanted, self)?;
+        let plan = plan::plan(passes, facts, wanted, self)?;
         let is_over = plan.report.peak_bytes > self.memory_budget_bytes;
         if !is_over || self.arena.is_none() || !plan::level_maps(facts).is_empty() {
             return Ok(plan);
@@ -351,7 +353,7 @@ impl Renderer {
         self.level_maps.clear();
         self.arena = None;
         self.bind_groups.clear();
-        Ok(plan::plan_scene(facts, wanted, self)?)
+        Ok(plan::plan(passes, facts, wanted, self)?)
     }
 
     /// Runs a plan, within the budgets of memory and level maps.

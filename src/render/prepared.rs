@@ -6,6 +6,7 @@ use super::ms_since;
 use crate::facts::SceneFacts;
 use crate::methods;
 use crate::scene::{ResolvedScene, SceneError};
+use crate::stages::Pass;
 use crate::tuning::chooses_dials;
 
 /// A scene with its facts, its warnings and its hash. Computed on the thread of the request, so that the GPU thread only has to plan and
@@ -17,6 +18,7 @@ pub struct Prepared {
     facts: SceneFacts,
     scene_hash: String,
     took_ms: f64,
+    passes: Vec<&'static Pass>,
 }
 
 impl Prepared {
@@ -53,10 +55,23 @@ impl Prepared {
     fn of(resolved: ResolvedScene, facts: SceneFacts, started: Instant) -> Self {
         Self {
             scene_hash: resolved.hash(),
+            passes: methods::of(&resolved.scene.quality).pipeline(),
             resolved,
             facts,
             took_ms: ms_since(started),
         }
+    }
+
+    /// The same scene with other passes than those of its method: for programs that try a method without putting it into the list.
+    #[must_use]
+    pub fn with_passes(mut self, passes: Vec<&'static Pass>) -> Self {
+        self.passes = passes;
+        self
+    }
+
+    /// All passes that may run, in order: those of the scene's method unless [replaced](Self::with_passes).
+    pub fn passes(&self) -> &[&'static Pass] {
+        &self.passes
     }
 
     /// The same scene with changed facts: for programs that trace other beam sets than the scene has.

@@ -179,7 +179,11 @@ impl Renderer {
         let mut rung = with_cells(resolved, cells);
         rung.scene.quality.estimate_error = true;
         let facts = methods::facts(&rung)?;
-        let plan = self.plan_in_budget(&facts, Wanted::Estimate)?;
+        let plan = self.plan_in_budget(
+            &methods::of(&facts.quality).pipeline(),
+            &facts,
+            Wanted::Estimate,
+        )?;
         let run = self.run(&rung, &facts, &plan, cancel)?;
         Ok(run.accuracy.and_then(|accuracy| accuracy.estimated_error))
     }

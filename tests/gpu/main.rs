@@ -36,6 +36,7 @@ mod layers;
 mod level_maps;
 mod level_maps_service;
 mod memory;
+mod own_passes;
 mod planes;
 mod planted;
 mod points;
