@@ -613,7 +613,7 @@ fn planes_are_in_where_they_are_asked_for() {
     let reason = reason_of(&smart, "depth_profile");
     assert_eq!(
         reason,
-        "of 17 planes those without a surface near them are left out"
+        "of 17 planes, those without a surface near them are skipped"
     );
     let dry = pool_with(&[
         ("quality", json!({ "method": "planes" })),
