@@ -16,6 +16,8 @@
 //! 2. [`facts::SceneFacts`] holds what decides which work is needed: the water's surface, the beam sets that light the receivers, the
 //!    rectangle of water that each beam set passes through (its window), and what the camera sees of the floor. Its coordinates are
 //!    relative to the visible region, so that f32 is as accurate far from the origin as near it.
+//!    Facts are known before the job reaches the GPU thread, with one exception: for `target_error` and `time_budget_ms`, the facts of
+//!    trial settings are derived on that thread (`src/render/tune.rs`).
 //! 3. [`methods::of`] finds the method that the scene names, with its passes. [`plan::plan_scene`] walks the list of passes backwards
 //!    from the requested output and keeps the passes that are needed. Each pass gets a sentence that says why it is present or absent.
 //!    No GPU is involved, and the peak memory is known before anything is allocated.
@@ -45,26 +47,29 @@
 //!
 //! | room | holds |
 //! |---|---|
-//! | [`cli`], [`http`] | command line and HTTP service: texts and status codes; each command or resource is one file |
-//! | [`lab`] | studies, plots, reports, published experiments, hard cases, generated shapes; the engine never imports it |
+//! | [`cli`] | the command line: arguments, texts and exit codes; each command is one file |
+//! | [`http`] | the HTTP service: routes and status codes; each resource is one file |
+//! | [`lab`] | studies, plots, reports, published experiments, hard cases, generated shapes; only `cli` and `http` use it |
 //! | [`gpu_queue`] | the bounded queue and the one GPU thread; loss of the device and recovery |
 //! | [`render`] | facts + plan → frame; the self-check |
-//! | [`plan`] | which results a frame needs, and the plan as text and JSON |
 //! | [`tuning`] | chooses dials for a target error or time |
+//! | [`plan`] | which results a frame needs, and the plan as text and JSON |
 //! | [`methods`] | one folder per method, published or our own; [`methods::ALL`] is the list |
 //! | [`stages`] | passes that several methods share, each with its slots |
-//! | [`facts`] | what is derived from a scene: water, lights with their beam sets, receivers, output, warnings |
 //! | [`cache`] | what is kept on the GPU between frames |
+//! | [`facts`] | what is derived from a scene: water, lights with their beam sets, receivers, output, warnings |
 //! | [`reference`] | float64 truth by plain rays: an independent algorithm, not a port; it also derives the scene's geometry independently |
 //! | [`accuracy`] | error metrics of images, and a frame's estimate of its own error |
+//! | [`image`] | PNG, EXR, tone curve |
+//! | [`frame`] | a rendered frame: linear f32 layers and their stats |
+//! | [`assets`] | files that scenes refer to by content id |
+//! | [`waves`] | the water's surface |
+//! | [`scene`] | what a request may contain: types, ranges, parsing, validation |
+//! | [`mesh`] | reading OBJ, repairs with a report, ray hierarchy |
 //! | [`graph`] | passes, slots, scopes and the planner's walk: generic, without water or wgpu calls |
 //! | [`gpu`] | device, kernels, buffers, timing; knows nothing of water |
-//! | [`image`] | PNG, EXR, tone curve |
-//! | [`assets`] | files that scenes refer to by content id |
-//! | [`scene`] | what a request may contain: types, ranges, parsing, validation |
-//! | [`waves`] | the water's surface |
-//! | [`mesh`] | reading OBJ, repairs with a report, ray hierarchy |
 //! | [`physics`] | formulas in f64, each with its source; [`physics::registry`] pairs them with their twins in `shaders/lib` |
+//! | [`stats`] | the cost of a frame, its energy account and its warnings |
 //! | [`config`] | every setting |
 //! | [`calibration`] | what passes cost on one machine, and how far error estimates may be off |
 

@@ -5,13 +5,9 @@
 #import "shared/points.wgsl"
 #import "shared/normals.wgsl"
 #import "shared/geometry.wgsl"
+#import "shared/air_lights.wgsl"
 #import "shared/receivers.wgsl"
 #import "shared/level_maps.wgsl"
-
-struct AirLight {
-    source: vec4f, // sun: unit direction to it, w 0; point light: its position, local m, w 1
-    power: vec4f,  // irradiance of a plane facing the sun, W/m²; intensity of the point light, W/sr
-}
 
 // Least |cosine| between surface normal and map axis: below it a surface is seen edge-on from the axis.
 const LEAST_COSINE: f32 = 1e-6;
@@ -21,7 +17,6 @@ const LEAST_COSINE: f32 = 1e-6;
 @group(0) @binding(12) var<storage, read> irradiance: array<f32>;
 @group(0) @binding(16) var<storage, read> points: array<Point>;
 @group(0) @binding(20) var<storage, read_write> point_irradiance: array<vec4f>; // W/m², w: 1 where the floor's map has no texel
-@group(0) @binding(21) var<uniform> air_lights: array<AirLight, 64>;
 
 fn texel_value(offset: u32, width: u32, texel: vec2u) -> vec3f {
     let at = 3u * (offset + texel.y * width + texel.x);
@@ -77,29 +72,6 @@ fn object_irradiance(first: u32, p: vec3f, normal: vec3f) -> vec3f {
     return sum * (cosine / weights);
 }
 
-// Irradiance of a dry place from suns and point lights over the water.
-fn lights_in_air(p: vec3f, normal: vec3f) -> vec3f {
-    let from_m = p + normal * 1e-3;
-    var sum = vec3f(0.0);
-    for (var i = 0u; i < view.air_light_count; i++) {
-        var to_light = air_lights[i].source.xyz;
-        var reach_m = VERY_FAR_M;
-        var per_power = 1.0;
-        if air_lights[i].source.w == 1.0 {
-            let to_source = air_lights[i].source.xyz - from_m;
-            let length2 = max(dot(to_source, to_source), 1e-12);
-            reach_m = sqrt(length2);
-            to_light = to_source / reach_m;
-            per_power = 1.0 / length2;
-        }
-        let cosine = dot(normal, to_light);
-        if cosine <= 0.0 { continue; }
-        let blocker = trace_objects(view.instance_count, from_m, to_light, 0.0, reach_m);
-        if blocker.receiver < 0 { sum += air_lights[i].power.xyz * (cosine * per_power); }
-    }
-    return sum;
-}
-
 @compute @workgroup_size(8, 8)
 fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
     let index = band_pixel(id);
@@ -113,7 +85,7 @@ fn camera_irradiance_main(@builtin(global_invocation_id) id: vec3u) {
         let p = seen.position_m;
         let normal = seen.normal;
         if dry {
-            sum += lights_in_air(p, normal);
+            sum += lights_in_air(view.air_light_count, view.instance_count, p, normal);
             for (var c = 0; c < 3; c++) { sum[c] += sky_irradiance(view.sky_radiance[c], 1.0, 0.0, 0.0, 1.0, normal.y, 1.0); }
         } else {
             let per_light = 1u + view.instance_count * view.layers;

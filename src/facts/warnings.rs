@@ -54,12 +54,36 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     all.extend(thin_objects(facts, meshes));
     all.extend(left_out_by_method(facts, &blocked));
     all.extend(coarse_cells(facts));
-    for light in &facts.lights.beam_sets {
-        all.extend(from_below(light));
-        all.extend(within_objects(facts, light, &blocked));
-        all.extend(close_to_water(facts, light));
-        if unfollowed::can_face_away(&facts.water.surface, light) {
-            all.push(unfollowed::waves_shade_waves(light.light_index));
+    let mut of_lights = Vec::new();
+    for set in &facts.lights.beam_sets {
+        of_lights.extend(from_below(set));
+        of_lights.extend(within_objects(facts, set, &blocked));
+        of_lights.extend(close_to_water(facts, set));
+        if unfollowed::can_face_away(&facts.water.surface, set) {
+            of_lights.push(unfollowed::waves_shade_waves(set.light_index));
+        }
+    }
+    all.extend(joined(of_lights));
+    all
+}
+
+/// One warning for those of several beam sets of one light that say the same, with the sum of their flux.
+fn joined(warnings: Vec<Warning>) -> Vec<Warning> {
+    let mut all: Vec<Warning> = Vec::new();
+    for warning in warnings {
+        let same = |known: &&mut Warning| {
+            (&known.code, &known.message, &known.pointer)
+                == (&warning.code, &warning.message, &warning.pointer)
+        };
+        match all.iter_mut().find(same) {
+            Some(known) => {
+                if let (Some(sum), Some(more)) = (&mut known.flux_w, warning.flux_w) {
+                    for (sum, more) in sum.iter_mut().zip(more) {
+                        *sum += more;
+                    }
+                }
+            }
+            None => all.push(warning),
         }
     }
     all
@@ -151,7 +175,7 @@ fn dry_parts(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning> {
         .collect()
 }
 
-/// Objects whose bounds, seen from the light, are narrower than a texel of their level map.
+/// Objects that are narrower, as seen from the light, than a texel of their level map.
 fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
     let of_object = |index: usize| {
         let object = &facts.receivers.objects[index];
@@ -185,7 +209,7 @@ fn thin_objects(facts: &SceneFacts, meshes: &[Arc<Mesh>]) -> Vec<Warning> {
             "more quality.level_map_texels help"
         };
         let message = format!(
-            "seen from the light the object is {width_m:.1e} m wide, less than a texel of its level map of {texel_m:.1e} m: some or all of the light that it should block gets through; {helps}"
+            "the object is {width_m:.1e} m wide as seen from the light, less than a texel of its level map ({texel_m:.1e} m): some or all of the light that it should block gets through; {helps}"
         );
         let at = format!("/objects/{index}");
         Some(with_flux(

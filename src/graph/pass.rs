@@ -130,6 +130,8 @@ pub struct PassDesc<P: Program> {
     pub writes: &'static [&'static SlotDesc<P>],
     /// Uniform variables that its steps supply: name, and layout of the struct.
     pub uniforms: &'static [(&'static str, Layout)],
+    /// Texture variables that its steps bind to one layer of a slot, under another name than the slot's.
+    pub views: &'static [&'static str],
     /// The reason why it runs (`Ok`) or not (`Err`), as a sentence.
     pub wanted: fn(&P::Facts) -> Result<String, String>,
     /// Its scope, and its dispatches and draws for one run.

@@ -66,9 +66,11 @@ impl Phase {
     pub fn of(scope: Scope) -> Self {
         match scope {
             Scope::Frame | Scope::LevelMap => Self::Preparation,
-            Scope::BeamSet | Scope::FineBeamSet | Scope::CoarseBeamSet | Scope::Estimate => {
-                Self::Light
-            }
+            Scope::BeamSet
+            | Scope::FineBeamSet
+            | Scope::BeamSetMaps
+            | Scope::CoarseBeamSet
+            | Scope::Estimate => Self::Light,
             Scope::Band | Scope::BandBeamSet => Self::Picture,
         }
     }
@@ -85,6 +87,22 @@ pub enum PlanError {
         /// The slot.
         slot: &'static str,
     },
+    /// A requested slot is written by no pass of the list: a defect of the list.
+    #[error("`{slot}` is requested, but no pass of the list writes it")]
+    NothingMakes {
+        /// The slot.
+        slot: &'static str,
+    },
+}
+
+impl<P: Program> PlannedSlot<P> {
+    /// Whether the frame holds a texture of the slot in a phase. Textures of the preparation are dropped after it; others stay until the
+    /// end, because light may be traced again for the estimate.
+    pub fn has_texture(&self, phase: Phase) -> bool {
+        self.allocation == Allocation::Textures
+            && self.life[0] <= phase
+            && (phase == Phase::Preparation || self.life[1] > Phase::Preparation)
+    }
 }
 
 impl<P: Program> Planned<P> {
@@ -121,7 +139,7 @@ impl<P: Program> Planned<P> {
 /// - `kept_bytes`: size of a slot that a cache keeps.
 ///
 /// # Errors
-/// [`PlanError::NothingWrites`].
+/// [`PlanError`].
 pub fn plan<P: Program>(
     passes: &[&'static PassDesc<P>],
     facts: &P::Facts,
@@ -130,6 +148,12 @@ pub fn plan<P: Program>(
     kept_bytes: impl Fn(&SlotDesc<P>) -> u64,
 ) -> Result<Planned<P>, PlanError> {
     let mut awaiting = awaited.clone();
+    let is_made = |slot: &&&'static SlotDesc<P>| {
+        available.contains(**slot) || passes.iter().any(|pass| pass.writes.contains(*slot))
+    };
+    if let Some(slot) = awaited.iter().find(|slot| !is_made(slot)) {
+        return Err(PlanError::NothingMakes { slot: slot.name });
+    }
     let (mut kept, mut absent) = (Vec::new(), Vec::new());
     for pass in passes.iter().copied().rev() {
         match verdict(pass, facts, &awaiting, available) {
@@ -154,12 +178,7 @@ pub fn plan<P: Program>(
     planned.texture_bytes = [Phase::Preparation, Phase::Light, Phase::Picture]
         .into_iter()
         .map(|phase| {
-            let alive = |slot: &&PlannedSlot<P>| {
-                slot.allocation == Allocation::Textures
-                    && slot.life[0] <= phase
-                    && phase <= slot.life[1]
-            };
-            let alive = planned.slots.iter().filter(alive);
+            let alive = planned.slots.iter().filter(|slot| slot.has_texture(phase));
             alive.map(|slot| slot.bytes).sum()
         })
         .max()
@@ -198,13 +217,16 @@ fn verdict<P: Program>(
     ))
 }
 
-/// Checks that every slot a pass reads comes from the host, is cached, or is written by an earlier pass.
+/// Checks that every slot a pass reads comes from the host, is cached, or is written by a pass that runs earlier: in an earlier scope, or
+/// in the same scope and earlier in the list.
 fn check_order<P: Program>(
     kept: &[(&'static PassDesc<P>, String)],
     available: &BTreeSet<&'static SlotDesc<P>>,
 ) -> Result<(), PlanError> {
     let mut available = available.clone();
-    for (pass, _) in kept {
+    let mut in_order: Vec<&'static PassDesc<P>> = kept.iter().map(|(pass, _)| *pass).collect();
+    in_order.sort_by_key(|pass| pass.steps.scope().order());
+    for pass in in_order {
         let missing = pass.reads.iter().find(|slot| {
             let from_host = matches!(slot.origin, Origin::Host | Origin::HostCached);
             !from_host && !available.contains(*slot)

@@ -17,7 +17,7 @@ pub trait Program: Sized + 'static {
 /// How often a pass runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Scope {
-    /// Once, before any light.
+    /// Once, before any light and any level map.
     Frame,
     /// Once per level map that is not cached.
     LevelMap,
@@ -25,7 +25,10 @@ pub enum Scope {
     BeamSet,
     /// Once per beam set, but not for the coarse ones: passes that make the frame's maps, or that only count.
     FineBeamSet,
-    /// Once per coarse beam set.
+    /// Once per beam set, but not for the coarse ones, after it is known that the sums of the set did not wrap: passes that add sums to the
+    /// frame's maps.
+    BeamSetMaps,
+    /// Once per coarse beam set. A list with such a pass needs one of scope `Estimate`.
     CoarseBeamSet,
     /// Once, after all fine and coarse beam sets.
     Estimate,
@@ -33,6 +36,21 @@ pub enum Scope {
     Band,
     /// Once per band, sample and beam set.
     BandBeamSet,
+}
+
+impl Scope {
+    /// Scopes run in this order; passes of scopes with the same number run in the order of the list.
+    pub(super) fn order(self) -> u32 {
+        match self {
+            Self::Frame => 0,
+            Self::LevelMap => 1,
+            Self::BeamSet | Self::FineBeamSet => 2,
+            Self::BeamSetMaps => 3,
+            Self::CoarseBeamSet => 4,
+            Self::Estimate => 5,
+            Self::Band | Self::BandBeamSet => 6,
+        }
+    }
 }
 
 /// Which beam set a run traces.
@@ -64,7 +82,7 @@ pub enum Run<'a, P: Program> {
     Frame,
     /// See [`Scope::LevelMap`].
     LevelMap(&'a P::LevelMap),
-    /// See [`Scope::BeamSet`] and [`Scope::FineBeamSet`].
+    /// See [`Scope::BeamSet`], [`Scope::FineBeamSet`] and [`Scope::BeamSetMaps`].
     BeamSet(BeamSetRun),
     /// See [`Scope::CoarseBeamSet`]: the coarse set, and the facts whose maps it is compared with.
     CoarseBeamSet(BeamSetRun, &'a P::Facts),
@@ -122,6 +140,8 @@ pub enum Steps<P: Program> {
     BeamSet(fn(&P::Facts, BeamSetRun) -> Vec<Step<P>>),
     /// See [`Scope::FineBeamSet`].
     FineBeamSet(fn(&P::Facts, BeamSetRun) -> Vec<Step<P>>),
+    /// See [`Scope::BeamSetMaps`].
+    BeamSetMaps(fn(&P::Facts, BeamSetRun) -> Vec<Step<P>>),
     /// See [`Scope::CoarseBeamSet`]: the coarse facts, the set, and the facts whose maps it is compared with.
     CoarseBeamSet(CoarseSteps<P>),
     /// See [`Scope::Estimate`].
@@ -161,6 +181,7 @@ impl<P: Program> Steps<P> {
             Self::LevelMap(_) => Scope::LevelMap,
             Self::BeamSet(_) => Scope::BeamSet,
             Self::FineBeamSet(_) => Scope::FineBeamSet,
+            Self::BeamSetMaps(_) => Scope::BeamSetMaps,
             Self::CoarseBeamSet(_) => Scope::CoarseBeamSet,
             Self::Estimate(_) => Scope::Estimate,
             Self::Band(_) => Scope::Band,
@@ -178,9 +199,10 @@ impl<P: Program> Steps<P> {
                 Ok(steps(facts))
             }
             (Self::LevelMap(steps), Run::LevelMap(map)) => Ok(steps(facts, map)),
-            (Self::BeamSet(steps) | Self::FineBeamSet(steps), Run::BeamSet(set)) => {
-                Ok(steps(facts, set))
-            }
+            (
+                Self::BeamSet(steps) | Self::FineBeamSet(steps) | Self::BeamSetMaps(steps),
+                Run::BeamSet(set),
+            ) => Ok(steps(facts, set)),
             (Self::CoarseBeamSet(steps), Run::CoarseBeamSet(set, fine)) => {
                 Ok(steps(facts, set, fine))
             }

@@ -89,6 +89,14 @@ impl Method {
         (self.facts)(&Quality::default())
     }
 
+    /// Checks that it can render a scene with these facts.
+    ///
+    /// # Errors
+    /// Its reason against the scene, and the other methods.
+    pub fn accepts(&self, facts: &SceneFacts) -> Result<(), SceneError> {
+        (self.supports)(facts).map_err(|reason| unsupported(self, reason))
+    }
+
     /// All passes of a frame with this method, in the order they run.
     pub fn pipeline(&self) -> Vec<&'static Pass> {
         let own = |in_picture: bool| {
@@ -181,10 +189,8 @@ fn supported(
     }
     let method = of(quality);
     let facts = facts(resolved, (method.facts)(quality))?;
-    match (method.supports)(&facts) {
-        Ok(()) => Ok(facts),
-        Err(reason) => Err(unsupported(method, reason)),
-    }
+    method.accepts(&facts)?;
+    Ok(facts)
 }
 
 /// Why the method of a scene cannot render it although another choice of method or dials might; `None` if it can.

@@ -141,7 +141,8 @@ impl Cached for WarmCache {
     }
 }
 
-/// The slots that hold the requested part of a scene's output. The energy account is always requested if light is traced.
+/// The slots that hold the requested part of a scene's output. The energy account is always requested if light is traced; [`plan`] leaves it
+/// out if no pass of its list keeps an account.
 pub fn awaited(facts: &SceneFacts, wanted: Wanted) -> BTreeSet<&'static Slot> {
     match wanted {
         Wanted::LevelMaps => return BTreeSet::from([&LEVEL_MAPS]),
@@ -222,13 +223,9 @@ pub fn plan(
             slot.bytes(facts)
         }
     };
-    let graph = graph::plan(
-        passes,
-        facts,
-        &awaited(facts, wanted),
-        &available,
-        kept_bytes,
-    )?;
+    let mut awaited = awaited(facts, wanted);
+    awaited.retain(|slot| **slot != ENERGY || passes.iter().any(|p| p.writes.contains(slot)));
+    let graph = graph::plan(passes, facts, &awaited, &available, kept_bytes)?;
     let report = report(&graph, facts, wanted, missing);
     Ok(FramePlan {
         wanted,
@@ -421,7 +418,7 @@ fn runs(scope: Scope, facts: &SceneFacts, missing_level_maps: usize) -> u32 {
     });
     match scope {
         Scope::LevelMap => narrow(missing_level_maps),
-        Scope::BeamSet | Scope::FineBeamSet | Scope::CoarseBeamSet => sets,
+        Scope::BeamSet | Scope::FineBeamSet | Scope::BeamSetMaps | Scope::CoarseBeamSet => sets,
         Scope::Frame | Scope::Estimate => 1,
         Scope::Band => bands,
         Scope::BandBeamSet => bands.saturating_mul(sets),

@@ -29,6 +29,7 @@ pub(super) struct FrameSlots {
     shared: Vec<(&'static str, wgpu::Buffer)>,
     /// Slots that are cleared before each beam set, in the order of the queue heads.
     cleared: Vec<&'static Slot>,
+    texture_peak_bytes: u64,
     empty: wgpu::Buffer,
     queue_heads: wgpu::Buffer,
     pub(super) indirect: wgpu::Buffer,
@@ -97,13 +98,9 @@ impl FrameSlots {
         }
     }
 
-    /// Drops the textures that are not needed after a phase.
-    pub(super) fn end_phase(&mut self, plan: &FramePlan, phase: Phase) {
-        for planned in &plan.graph.slots {
-            if planned.allocation == Allocation::Textures && planned.life[1] <= phase {
-                self.held.remove(planned.slot);
-            }
-        }
+    /// The most that its textures took at one time.
+    pub(super) fn texture_peak_bytes(&self) -> u64 {
+        self.texture_peak_bytes
     }
 
     /// Empties queues, the account and the flux sums before a beam set.
@@ -166,8 +163,9 @@ impl Renderer {
                     buffer: shared[number].1.clone(),
                     bytes: planned.bytes,
                 }),
-                Allocation::Textures => self.texture(slot, facts),
-                Allocation::Kept => self.kept(slot, resolved, facts),
+                Allocation::Textures => None,
+                Allocation::Kept if planned.bytes == 0 => None,
+                Allocation::Kept => self.kept(slot, resolved),
             };
             held.extend(found.map(|found| (slot, found)));
         }
@@ -192,19 +190,47 @@ impl Renderer {
         let zeros = [0; EMPTY_LIST_BYTES as usize];
         self.gpu.queue.write_buffer(&empty, 0, &zeros);
         let indirect_usage = U::INDIRECT | U::COPY_DST | U::COPY_SRC;
-        let slots = FrameSlots {
+        let mut slots = FrameSlots {
             held,
             shared,
             cleared: cleared.collect(),
+            texture_peak_bytes: 0,
             empty,
             queue_heads,
             indirect: self
                 .pool
                 .lend(&device, INDIRECT, INDIRECT_BYTES, indirect_usage),
         };
+        self.next_phase(&mut slots, facts, plan, Phase::Preparation);
         self.upload(facts, &slots);
         self.gpu.check()?;
         Ok(slots)
+    }
+
+    /// Drops the textures that a phase no longer needs, and makes those that it needs first.
+    pub(super) fn next_phase(
+        &self,
+        slots: &mut FrameSlots,
+        facts: &SceneFacts,
+        plan: &FramePlan,
+        phase: Phase,
+    ) {
+        for planned in &plan.graph.slots {
+            if planned.allocation == Allocation::Textures && !planned.has_texture(phase) {
+                slots.held.remove(planned.slot);
+            }
+        }
+        for planned in &plan.graph.slots {
+            if planned.has_texture(phase) && !slots.held.contains_key(planned.slot) {
+                let made = self.texture(planned.slot, facts);
+                slots.held.extend(made.map(|made| (planned.slot, made)));
+            }
+        }
+        let bytes = slots.held.iter().filter_map(|(slot, held)| match held {
+            Held::Texture { .. } => Some(slot.bytes(facts)),
+            Held::Buffer { .. } => None,
+        });
+        slots.texture_peak_bytes = slots.texture_peak_bytes.max(bytes.sum());
     }
 
     /// Returns the buffers of a frame to the pool.
@@ -222,14 +248,14 @@ impl Renderer {
     }
 
     /// A slot that a cache keeps.
-    fn kept(&mut self, slot: &Slot, resolved: &ResolvedScene, facts: &SceneFacts) -> Option<Held> {
+    fn kept(&mut self, slot: &Slot, resolved: &ResolvedScene) -> Option<Held> {
         let buffer = if *slot == GEOMETRY {
             if resolved.meshes.is_empty() {
                 return None;
             }
             let geometry = self.geometry.hold(&self.gpu, &resolved.meshes);
             geometry.buffer.clone()
-        } else if *slot == LEVEL_MAPS && facts.wet_objects().next().is_some() {
+        } else if *slot == LEVEL_MAPS {
             self.arena_buffer()
         } else {
             return None;

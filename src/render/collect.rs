@@ -422,7 +422,7 @@ impl<'a> PointLayers<'a> {
         let unfinished = of_pixels(
             self.unfinished,
             "pixels_along_water",
-            "look along the waves at such a flat angle that the search for their rays' hit on the water ran out of steps; they show the place where it ended",
+            "have camera rays at such a grazing angle to the waves that the search for their hit on the water ran out of steps; they may show a wrong point of the water",
         );
         let warnings = outside.into_iter().chain(unfinished).collect();
         Ok((self.layers, warnings))

@@ -46,7 +46,7 @@ impl Renderer {
         let mut slots = self.prepare(resolved, job.facts, job.plan)?;
         let result = self.run_passes(job, &mut slots);
         let peak_bytes = self.pool.peak_bytes()
-            + job.plan.graph.texture_bytes
+            + slots.texture_peak_bytes()
             + self.gpu.take_readback_peak()
             + plan::differences_beside(job.facts)
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
@@ -72,7 +72,7 @@ impl Renderer {
         let mut time_ms = TimeStats::default();
         self.run_once(job, slots, &mut time_ms)?;
         self.build_level_maps(job, slots, &mut time_ms)?;
-        slots.end_phase(plan, Phase::Preparation);
+        self.next_phase(slots, facts, plan, Phase::Light);
         let comparing = [Scope::BeamSet, Scope::CoarseBeamSet, Scope::Estimate]
             .map(|scope| plan.graph.of(scope));
         let mut comparison = (!comparing[2].is_empty()).then(|| Comparison::new(facts));
@@ -96,11 +96,19 @@ impl Renderer {
             level_maps_built: u32::try_from(job.missing.len()).unwrap_or(u32::MAX),
             allocated_bytes: None,
         };
+        self.next_phase(slots, facts, plan, Phase::Picture);
         if plan.wanted == Wanted::Points {
             self.run_points(job, slots, &mut result)?;
         } else if plan.wanted == Wanted::Frame {
             if plan::is_made_at_points(facts) {
-                self.run_bands(job, slots, &mut result)?;
+                let mut wide = sums.wide;
+                // Sets that no pass traced have no sums.
+                wide.resize(facts.lights.beam_sets.len(), false);
+                let traced = Traced {
+                    wide: &wide,
+                    is_current: wide.len() == 1 && comparison.is_none(),
+                };
+                self.run_bands(job, traced, slots, &mut result)?;
             } else {
                 self.collect_map(facts, slots, &mut result)?;
             }
@@ -150,6 +158,7 @@ impl Renderer {
             .map(|(pass, _)| *pass)
             .filter(|pass| matches!(pass.steps.scope(), Scope::BeamSet | Scope::FineBeamSet))
             .collect();
+        let maps = job.plan.graph.of(Scope::BeamSetMaps);
         let sets = if passes.is_empty() {
             0
         } else {
@@ -161,11 +170,11 @@ impl Renderer {
             // Only the comparison follows the last beam set.
             let next = comparison.as_mut().filter(|_| index + 1 == sets);
             let next = next.map(|comparison| (comparison, comparing));
-            let found = self.run_beam_set(facts, index, &passes, next, slots, time_ms)?;
-            if let Some((account, counts)) = found {
-                all.accounts.extend(account);
-                all.plane_counts.extend(counts);
-            }
+            let passes = (passes.as_slice(), maps.as_slice());
+            let sums = self.run_beam_set(facts, index, passes, next, slots, time_ms)?;
+            all.accounts.extend(sums.account);
+            all.plane_counts.extend(sums.plane_counts);
+            all.wide.push(sums.wide);
             if self.wide_sum_reruns > reruns {
                 let light = facts.lights.beam_sets[index].light_index;
                 all.widened.push(collect::widened(light));
@@ -181,19 +190,13 @@ impl Renderer {
         &mut self,
         facts: &SceneFacts,
         index: usize,
-        passes: &[&'static Pass],
+        (tracing, maps): (&[&'static Pass], &[&'static Pass]),
         mut next: Option<(&mut Comparison, &ComparisonPasses)>,
         slots: &FrameSlots,
         time_ms: &mut TimeStats,
-    ) -> Result<Option<RawSums>, RenderError> {
-        let Some((energy, _)) = slots.held_buffer(&ENERGY) else {
-            return Ok(None);
-        };
+    ) -> Result<RawSums, RenderError> {
+        let energy = slots.held_buffer(&ENERGY);
         let planes = slots.held_buffer(&PLANE_COUNTS);
-        let (sums, maps): (Vec<&'static Pass>, Vec<&'static Pass>) = passes
-            .iter()
-            .copied()
-            .partition(|pass| !pass.writes.contains(&&IRRADIANCE));
         let mut wide_sums = light::needs_wide_sums(facts, index);
         loop {
             let run = Run::BeamSet(BeamSetRun { index, wide_sums });
@@ -201,8 +204,9 @@ impl Renderer {
             self.set_receivers(facts, index, slots);
             let mut encoder = self.encoder("light");
             slots.clear_for_beam_set(&mut encoder, facts, wide_sums);
-            self.record_all(&mut encoder, &sums, facts, run, slots, time_ms)?;
-            let staged = readback::stage(&self.gpu, &mut encoder, energy, ACCOUNT_BYTES);
+            self.record_all(&mut encoder, tracing, facts, run, slots, time_ms)?;
+            let staged = energy
+                .map(|(buffer, _)| readback::stage(&self.gpu, &mut encoder, buffer, ACCOUNT_BYTES));
             let staged_counts = planes.map(|(buffer, _)| {
                 let bytes = PLANE_COUNTS.bytes(facts);
                 readback::stage(&self.gpu, &mut encoder, buffer, bytes)
@@ -210,9 +214,9 @@ impl Renderer {
             let submitted = self.send(encoder, started, time_ms);
             let timed_so_far = self.timing.mark();
             let mut ahead = Vec::new();
-            if self.runs_in_one_submission(&maps, facts, run, slots)? {
+            if self.runs_in_one_submission(maps, facts, run, slots)? {
                 let mut encoder = self.encoder("light's maps");
-                self.record_all(&mut encoder, &maps, facts, run, slots, time_ms)?;
+                self.record_all(&mut encoder, maps, facts, run, slots, time_ms)?;
                 ahead.push(encoder.finish());
                 if let Some((comparison, passes)) = &mut next {
                     ahead.extend(self.record_comparison(comparison, facts, passes, slots)?);
@@ -221,11 +225,13 @@ impl Renderer {
             self.gpu.wait()?;
             time_ms.gpu += ms_since(submitted);
             let started = Instant::now();
-            let account: Vec<u64> = staged.read(&self.gpu)?;
+            let account: Option<Vec<u64>> =
+                staged.map(|staged| staged.read(&self.gpu)).transpose()?;
             let counts = staged_counts.map(|staged| staged.read(&self.gpu));
             let counts: Option<Vec<[u32; 4]>> = counts.transpose()?;
             time_ms.readback += ms_since(started);
-            if !wide_sums && has_wrapped(facts, index, &account) {
+            let wrapped = |account: &Vec<u64>| has_wrapped(facts, index, account);
+            if !wide_sums && account.as_ref().is_some_and(wrapped) {
                 self.wide_sum_reruns += 1;
                 wide_sums = true;
                 self.timing.forget_since(timed_so_far);
@@ -234,13 +240,18 @@ impl Renderer {
                 }
                 continue;
             }
+            let sums = RawSums {
+                account: account.unwrap_or_default(),
+                plane_counts: counts,
+                wide: wide_sums,
+            };
             // Sums are added to the maps only after it is known that they did not wrap.
             if ahead.is_empty() {
                 let started = Recording::start(time_ms);
                 let mut encoder = self.encoder("light's maps");
-                self.record_all(&mut encoder, &maps, facts, run, slots, time_ms)?;
+                self.record_all(&mut encoder, maps, facts, run, slots, time_ms)?;
                 self.send(encoder, started, time_ms);
-                return Ok(Some((account, counts)));
+                return Ok(sums);
             }
             self.recorded_ahead += 1;
             timed(&mut time_ms.upload, || {
@@ -253,7 +264,7 @@ impl Renderer {
                     self.gpu.queue.submit([commands]);
                 }
             });
-            return Ok(Some((account, counts)));
+            return Ok(sums);
         }
     }
 
@@ -282,6 +293,7 @@ impl Renderer {
     fn run_bands(
         &mut self,
         job: Job<'_>,
+        traced: Traced<'_>,
         slots: &FrameSlots,
         result: &mut RunResult,
     ) -> Result<(), RenderError> {
@@ -306,7 +318,8 @@ impl Renderer {
                     sample_index: sample.index,
                 };
                 let mut encoder = self.encoder("band");
-                self.record_band(&mut encoder, job, band, slots, &mut result.time_ms)?;
+                let time_ms = &mut result.time_ms;
+                self.record_band(&mut encoder, job, (band, traced), slots, time_ms)?;
                 self.submit(encoder, started, &mut result.time_ms)?;
                 let started = Instant::now();
                 for &slot in &awaited {
@@ -351,7 +364,12 @@ impl Renderer {
             };
             let started = Recording::start(&result.time_ms);
             let mut encoder = self.encoder("points");
-            self.record_band(&mut encoder, job, band, slots, &mut result.time_ms)?;
+            let time_ms = &mut result.time_ms;
+            let no_light = Traced {
+                wide: &[],
+                is_current: true,
+            };
+            self.record_band(&mut encoder, job, (band, no_light), slots, time_ms)?;
             self.submit(encoder, started, &mut result.time_ms)?;
             let bytes = size_of::<Point>() as u64 * u64::from(width) * u64::from(band.rows);
             let read: Vec<Point> = readback::read(&self.gpu, slots.buffer(&POINTS).0, bytes)?;
@@ -360,13 +378,13 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the passes of a band. Passes per band and beam set run for each set; if there are several sets, each is traced again for
-    /// the band.
+    /// Records the passes of a band. Passes per band and beam set run for each set; unless the slots still hold the only set, each is traced
+    /// again for the band.
     fn record_band(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         job: Job<'_>,
-        band: BandRun,
+        (band, traced): (BandRun, Traced<'_>),
         slots: &FrameSlots,
         time_ms: &mut TimeStats,
     ) -> Result<(), RenderError> {
@@ -376,7 +394,6 @@ impl Renderer {
             .filter(|pass| Phase::of(pass.steps.scope()) == Phase::Picture)
             .collect();
         let per_set = plan.graph.of(Scope::BandBeamSet);
-        let sets = facts.lights.beam_sets.len();
         for pass in picture {
             if pass.steps.scope() == Scope::Band {
                 self.record_all(encoder, &[pass], facts, Run::Band(band), slots, time_ms)?;
@@ -386,12 +403,9 @@ impl Renderer {
                 // The passes of a set are recorded together, with the first of them.
                 continue;
             }
-            for index in 0..sets {
-                let set = BeamSetRun {
-                    index,
-                    wide_sums: light::needs_wide_sums(facts, index),
-                };
-                if sets > 1 {
+            for (index, &wide_sums) in traced.wide.iter().enumerate() {
+                let set = BeamSetRun { index, wide_sums };
+                if !traced.is_current {
                     // The recorded commands read the receivers of the previous set, so they are submitted first.
                     let recorded = std::mem::replace(encoder, self.encoder("band"));
                     self.gpu.queue.submit([recorded.finish()]);
@@ -505,16 +519,33 @@ impl Renderer {
     }
 }
 
-/// Sums of a beam set: its raw account, and the counts of its planes.
-type RawSums = (Vec<u64>, Option<Vec<[u32; 4]>>);
+/// Sums of a beam set.
+struct RawSums {
+    /// Its raw account; empty if no pass keeps one.
+    account: Vec<u64>,
+    plane_counts: Option<Vec<[u32; 4]>>,
+    /// Whether its flux was summed in 64 bits.
+    wide: bool,
+}
 
 /// The sums of all beam sets, one behind the other.
 #[derive(Default)]
 struct BeamSetSums {
     accounts: Vec<u64>,
     plane_counts: Vec<Vec<[u32; 4]>>,
+    /// Whether the flux of each set was summed in 64 bits.
+    wide: Vec<bool>,
     /// Warnings about sets that were traced again with wide sums.
     widened: Vec<crate::stats::Warning>,
+}
+
+/// How the beam sets were traced.
+#[derive(Clone, Copy)]
+struct Traced<'a> {
+    /// Whether the flux of each set is summed in 64 bits.
+    wide: &'a [bool],
+    /// Whether the slots still hold the only set.
+    is_current: bool,
 }
 
 /// One sample of the pixels of a band: a ray through each pixel.

@@ -194,7 +194,8 @@ impl Renderer {
     ) -> Result<Plan, RenderError> {
         let tuned = self.tuned(prepared, cancel)?;
         let rendered = tuned.as_ref().map_or(prepared, |tuned| &tuned.rung);
-        let mut plan = plan::plan_scene(rendered.facts(), Wanted::Frame, self)?.report;
+        let facts = rendered.facts();
+        let mut plan = plan::plan(rendered.passes(), facts, Wanted::Frame, self)?.report;
         plan.chosen = tuned.map(|tuned| tuned.chosen);
         Ok(plan)
     }

@@ -1,4 +1,4 @@
-//! A scene as it is sent to the GPU thread, with everything that can be computed before.
+//! Computes the facts, warnings and hash of a scene before it is sent to the GPU thread.
 
 use std::time::Instant;
 

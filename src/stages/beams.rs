@@ -19,6 +19,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&BEAMS],
     uniforms: &[("light", Light::LAYOUT)],
+    views: &[],
     wanted: wanted_for_light,
     steps: Steps::BeamSet(|facts, set| grid_step("beams_main", facts, set)),
     work: cells,

@@ -77,6 +77,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&POINTS, &VISIBLE_DEPTH, &VISIBLE_ALBEDO, &VISIBLE_TRANSPORT],
     uniforms: &[("view", View::LAYOUT)],
+    views: &[],
     wanted: wanted_for_camera,
     steps: Steps::Band(|facts, band| pixel_step("camera_hits_main", facts, band)),
     work: |facts| pixels(facts) as f64 * (1.0 + facts.water.surface.gpu_element_count() as f64),

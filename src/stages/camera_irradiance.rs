@@ -13,7 +13,7 @@ use crate::facts::{MOST_LIGHTS, Product, SceneFacts};
 use crate::gpu_struct;
 
 gpu_struct! {
-    /// A light in the air of `shaders/stages/camera_irradiance.wgsl`; fields are documented there.
+    /// A light in the air of `shaders/shared/air_lights.wgsl`; fields are documented there.
     #[expect(missing_docs, reason = "documented in the WGSL twin")]
     pub AirLight = "AirLight" {
         source: [f32; 4],
@@ -29,6 +29,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[&IRRADIANCE, &LEVEL_MAPS],
     writes: &[&POINT_IRRADIANCE],
     uniforms: &[("view", View::LAYOUT), ("air_lights", AirLight::LAYOUT)],
+    views: &[],
     wanted: |facts| {
         wanted_for_camera(facts)?;
         if facts.method.product == Product::PointIrradiance {
@@ -53,7 +54,8 @@ pub static PASS: Pass = Pass {
     work: |facts| pixels(facts) as f64,
 };
 
-fn air_lights(facts: &SceneFacts) -> Vec<u8> {
+/// The uniform of `shaders/shared/air_lights.wgsl`.
+pub(super) fn air_lights(facts: &SceneFacts) -> Vec<u8> {
     // The facts refuse scenes with more lights.
     let mut all = [AirLight::default(); MOST_LIGHTS];
     for (slot, light) in all.iter_mut().zip(&facts.lights.in_air) {

@@ -42,6 +42,7 @@ pub static PASS: Pass = Pass {
         ("light", Light::LAYOUT),
         ("coarse_light", CoarseLight::LAYOUT),
     ],
+    views: &[],
     wanted: |facts| {
         estimate::wanted(facts)?;
         Ok(format!(

@@ -32,6 +32,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&FLUX, &ENERGY, &SPLIT_QUEUE, &WIDE_QUEUE],
     uniforms: &[("light", Light::LAYOUT)],
+    views: &[],
     wanted: wanted_for_light,
     steps: Steps::BeamSet(|facts, set| {
         let groups = facts.quality.water_cells.div_ceil(CELLS_ALONG_GROUP);

@@ -77,6 +77,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&DIFFERENCES],
     uniforms: &[("estimate", Estimate::LAYOUT)],
+    views: &[],
     wanted: |facts| {
         wanted(facts)?;
         Ok("the maps are compared with those of the coarse beam sets".to_owned())

@@ -24,6 +24,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[&LEVEL_MAPS, &GEOMETRY, &INSTANCES],
     writes: &[&HITS],
     uniforms: &[("light", Light::LAYOUT)],
+    views: &[],
     wanted: wanted_for_light,
     steps: Steps::BeamSet(|facts, set| grid_step("hits_main", facts, set)),
     // A ray tests the objects that the hierarchy finds along it: about the square root of their number.

@@ -42,6 +42,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&IRRADIANCE],
     uniforms: &[("light", Light::LAYOUT), ("resolve", Resolve::LAYOUT)],
+    views: &[],
     wanted: |facts| {
         wanted_for_light(facts)?;
         let mut parts = Vec::new();
@@ -54,7 +55,7 @@ pub static PASS: Pass = Pass {
         parts.extend(object_maps(facts));
         Ok(parts.join(" and "))
     },
-    steps: Steps::FineBeamSet(resolve_steps),
+    steps: Steps::BeamSetMaps(resolve_steps),
     work: texels,
 };
 

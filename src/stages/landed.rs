@@ -29,6 +29,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&ENERGY],
     uniforms: &[("light", Light::LAYOUT), ("span", Span::LAYOUT)],
+    views: &[],
     wanted: wanted_for_light,
     steps: Steps::BeamSet(|facts, set| {
         let span = Span {

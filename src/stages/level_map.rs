@@ -146,6 +146,7 @@ pub static PASS: Pass = Pass {
         &MAP_DEPTH,
     ],
     uniforms: &[("level_map_view", LevelMapView::LAYOUT)],
+    views: &["previous_depth"],
     wanted: wanted_for_objects,
     steps: Steps::LevelMap(|_, run| {
         let front = draw(

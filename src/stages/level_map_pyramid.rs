@@ -16,6 +16,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[&LAYER_DEPTH, &LAYER_NORMAL],
     writes: &[&LEVEL_MAPS],
     uniforms: &[("level_map_view", LevelMapView::LAYOUT)],
+    views: &[],
     wanted: wanted_for_objects,
     steps: Steps::LevelMap(|_, run| {
         let key = &run.level_box.key;

@@ -6,7 +6,7 @@
 //! | water and its rays | `surface` (the one to copy), `beams`, `hits`, `unfollowed` |
 //! | level maps | `level_map`, `level_map_pyramid` |
 //! | flux on receivers | `deposit`, `split`, `landed`, `irradiance`; shared by them: `light`, `receivers`, `maps`, `sums`, `term`, `queues` |
-//! | points that pixels see or texels lie at | `points`: the slot; `camera_hits` and `texel_points` fill it; `camera_irradiance`, `shade` |
+//! | points that pixels see or texels lie at | `points`: the slot; `camera_hits` and `texel_points` fill it; `sky_and_air_lights`, `camera_irradiance`, `shade` |
 //! | the frame's estimate of its own error | `coarse_irradiance`, `estimate` |
 //! | reference planes | `reference_planes`: shared by methods that slice objects |
 //!
@@ -33,6 +33,7 @@ pub mod receivers;
 pub mod reference_planes;
 pub mod shade;
 pub mod shaders;
+pub mod sky_and_air_lights;
 pub mod split;
 pub mod sums;
 pub mod surface;
@@ -75,12 +76,14 @@ pub static BEFORE_METHOD: [&Pass; 4] = [
     &beams::PASS,
 ];
 
-/// Passes that run after the method has made its maps: the estimate of the error, and the points of the picture.
-pub static AFTER_MAPS: [&Pass; 4] = [
+/// Passes that run after the method has made its maps: the estimate of the error, the points of the picture, and the irradiance at
+/// them that does not depend on the method.
+pub static AFTER_MAPS: [&Pass; 5] = [
     &coarse_irradiance::PASS,
     &estimate::PASS,
     &camera_hits::PASS,
     &texel_points::PASS,
+    &sky_and_air_lights::PASS,
 ];
 
 /// Passes that run last: the irradiance at the points, from the maps, and the picture.

@@ -22,6 +22,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&RADIANCE],
     uniforms: &[("view", View::LAYOUT)],
+    views: &[],
     wanted: |facts| {
         wanted_for_camera(facts)?;
         if facts.output.wants(LayerName::Radiance) {

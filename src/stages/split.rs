@@ -68,6 +68,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&FLUX, &ENERGY, &SPLIT_QUEUE],
     uniforms: &[("light", Light::LAYOUT), ("split", Split::LAYOUT)],
+    views: &[],
     wanted: |facts| {
         wanted_for_light(facts)?;
         let wet = facts.wet_objects().count();

@@ -1,4 +1,4 @@
-//! Sums that beams add to: flux per texel, and the energy account.
+//! Declares the slots in which beams sum their light (flux per texel, and the energy account), with their sizes and the cost of a texel.
 
 use super::Slot;
 use super::maps::MapLayout;

@@ -44,6 +44,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&SURFACE],
     uniforms: &[("light", Light::LAYOUT)],
+    views: &[],
     wanted: wanted_for_light,
     steps: Steps::BeamSet(|facts, set| {
         if facts.lights.beam_sets[set.index].is_submerged() {

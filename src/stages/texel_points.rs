@@ -31,6 +31,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[&LEVEL_MAPS, &INSTANCES],
     writes: &[&POINTS],
     uniforms: &[("texel_points", TexelPoints::LAYOUT)],
+    views: &[],
     wanted: |facts| match (&facts.output.camera, size(facts)) {
         (None, Some([width, height])) => Ok(format!("a map of {width} × {height} texels")),
         (None, None) => Err("the requested map has no texels".to_owned()),

@@ -35,6 +35,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&ENERGY],
     uniforms: &[("light", Light::LAYOUT), ("unfollowed", Unfollowed::LAYOUT)],
+    views: &[],
     wanted: |facts| {
         wanted_for_light(facts)?;
         let paths = facts.unfollowed_paths().words();

@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use caustica::config::Limits;
 use caustica::methods::planes::{SLICING, SMART};
 use caustica::methods::reference_planes::PLANES;
-use caustica::methods::{self, Method};
+use caustica::methods::{self, Conformance, Method};
 use caustica::scene::{Dial, DialKind, DialValue, Issue, MethodChoice, Quality, Scene};
 use serde_json::{Value, json};
 
@@ -352,6 +353,27 @@ fn facts_of_unchecked_scenes_are_safe() {
 }
 
 #[test]
+fn a_method_that_refuses_a_scene_is_reported_with_its_reason() {
+    const REASON: &str = "it needs a floor of sand";
+    let refusing = Method {
+        name: "refusing",
+        supports: |_| Err(REASON.to_owned()),
+        conformance: Conformance {
+            sine_pool_error_at_256: 0.0,
+            skips: &[],
+        },
+        ..*methods::ALL[0]
+    };
+    let facts = methods::facts(&resolved(&json!({}))).unwrap();
+    let error = refusing.accepts(&facts).unwrap_err();
+    assert_eq!(pointers(&error.issues), ["/quality/method"]);
+    assert!(error.issues[0].detail.contains(REASON), "{error}");
+    for other in methods::ALL {
+        assert!(error.issues[0].accepted.contains(other.name), "{error}");
+    }
+}
+
+#[test]
 fn every_dial_is_a_field_that_says_whose_it_is() {
     let fields = methods::fields();
     let mut flags = BTreeSet::new();
@@ -458,7 +480,7 @@ fn choices_that_the_papers_show_are_accepted() {
 // Who may name a method.
 
 /// Lines that have the name of a method and mean something else: file, text of the line, and what it means.
-const OTHER_MEANINGS: [(&str, &str, &str); 3] = [
+const OTHER_MEANINGS: [(&str, &str, &str); 5] = [
     ("src/stages/level_map.rs", "name: \"level_map\"", "a pass"),
     (
         "src/image/metadata.rs",
@@ -470,17 +492,51 @@ const OTHER_MEANINGS: [(&str, &str, &str); 3] = [
         "(\"planes\", planes_uniform(",
         "a variable of shaders",
     ),
+    (
+        "src/methods/reference_planes.rs",
+        "name: \"planes\"",
+        "a dial",
+    ),
+    (
+        "src/methods/volumetric/slice_deposit.rs",
+        "(\"planes\", Planes::LAYOUT)",
+        "a variable of shaders",
+    ),
 ];
 
-/// Folders that may name methods: the methods themselves, and the thesis's own experiment, which compares just these.
-const MAY_NAME: [&str; 2] = ["src/methods/", "src/lab/experiment/"];
+/// Names of methods, and of their own files, that are words of other things too: the map of a mesh, and more than one plane. They count
+/// only in quotes and in paths.
+const COMMON_WORDS: [&str; 2] = ["level_map", "planes"];
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+/// Places that may name any method: the list of them, and the thesis's own experiment, which compares just these. The folder of a method
+/// may name that method.
+const MAY_NAME: [&str; 2] = ["src/methods/mod.rs", "src/lab/experiment/"];
+
+/// Names of every method's own files, without extension.
+static OWN_FILES: LazyLock<Vec<(&Method, BTreeSet<String>)>> =
+    LazyLock::new(|| Vec::from(methods::ALL.map(|method| (method, own_files(method)))));
+
+fn own_files(method: &Method) -> BTreeSet<String> {
+    let mut found = Vec::new();
+    for (folder, extension) in [("src/methods", "rs"), ("shaders/methods", "wgsl")] {
+        let folder = root().join(folder).join(method.name);
+        if folder.is_dir() {
+            sources(&folder, extension, &mut found);
+        }
+    }
+    let names = found.iter().filter_map(|path| path.file_stem()?.to_str());
+    names
+        .filter(|name| *name != "mod" && !COMMON_WORDS.contains(name))
+        .map(str::to_owned)
+        .collect()
+}
+
+fn sources(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|e| e == "rs") {
+            sources(&path, extension, found);
+        } else if path.extension().is_some_and(|e| e == extension) {
             found.push(path);
         }
     }
@@ -495,34 +551,65 @@ fn code(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// What a path into `methods` names: the word behind `methods::`, or all words of the braces there.
-fn words_behind_methods(code: &str) -> Vec<&str> {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    code.split("methods::")
+fn is_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// A word as it is in snake case, in camel case and in capitals alike.
+fn folded(word: &str) -> String {
+    word.replace('_', "").to_lowercase()
+}
+
+/// What paths through `module` (such as `methods::`) name: the word behind it, or all words of the braces there.
+fn words_behind<'a>(module: &str, code: &'a str) -> Vec<&'a str> {
+    code.split(module)
         .skip(1)
         .flat_map(|rest| {
             let list = match rest.strip_prefix('{') {
                 Some(braces) => braces.split(';').next().unwrap_or_default(),
                 None => rest.split(|c| !is_word(c)).next().unwrap_or_default(),
             };
-            list.split(move |c| !is_word(c))
+            list.split(|c| !is_word(c))
         })
         .collect()
 }
 
-/// Where `code` names a method.
-fn names_of_methods(code: &str) -> Vec<String> {
+/// Whether a line of code names a method in quotes, as a folder or within a word, or has the name of one of its own files as a word.
+fn names_it(line: &str, name: &str, files: &BTreeSet<String>) -> bool {
+    let texts = [format!("\"{name}\""), format!("methods/{name}/")];
+    if texts.iter().any(|text| line.contains(text.as_str())) {
+        return true;
+    }
+    let is_common = COMMON_WORDS.contains(&name);
+    let mut words = line.split(|c| !is_word(c)).map(folded);
+    words.any(|word| {
+        let has_name = !is_common && word.contains(&folded(name));
+        has_name || files.iter().any(|file| word == folded(file))
+    })
+}
+
+/// Where the code of the file at `place` names a method other than its own. It does not see common words without quotes or path, modules
+/// under another name (`use crate::methods as m`), what stands behind ` // ` in a string, and texts put together; block comments it takes
+/// for code.
+fn names_of_methods(code: &str, place: &str) -> Vec<String> {
     let mut found = Vec::new();
-    let paths = words_behind_methods(code);
-    for method in methods::ALL {
-        let quoted = format!("\"{}\"", method.name);
-        found.extend(
-            code.lines()
-                .filter(|line| line.contains(&quoted))
-                .map(|line| line.trim().to_owned()),
-        );
-        if paths.contains(&method.name) {
-            found.push(format!("methods::{}", method.name));
+    let mut paths = words_behind("methods::", code);
+    if place.starts_with("src/methods/") {
+        paths.extend(words_behind("super::", code));
+    }
+    for (method, files) in OWN_FILES.iter() {
+        let name = method.name;
+        let own = [
+            format!("src/methods/{name}/"),
+            format!("shaders/methods/{name}/"),
+        ];
+        if own.iter().any(|folder| place.starts_with(folder.as_str())) {
+            continue;
+        }
+        let lines = code.lines().filter(|line| names_it(line, name, files));
+        found.extend(lines.map(|line| line.trim().to_owned()));
+        if paths.contains(&name) {
+            found.push(format!("methods::{name}"));
         }
     }
     found
@@ -531,18 +618,21 @@ fn names_of_methods(code: &str) -> Vec<String> {
 #[test]
 fn no_other_source_file_names_a_method() {
     let mut files = Vec::new();
-    sources(&root().join("src"), &mut files);
-    files.sort();
+    sources(&root().join("src"), "rs", &mut files);
     assert!(files.len() > 100, "{}", files.len());
+    let rust = files.len();
+    sources(&root().join("shaders"), "wgsl", &mut files);
+    assert!(files.len() > rust + 40, "{}", files.len());
+    files.sort();
     let mut unused: Vec<_> = OTHER_MEANINGS.to_vec();
     let mut offences = Vec::new();
     for path in files {
         let name = path.strip_prefix(root()).unwrap().display().to_string();
-        if MAY_NAME.iter().any(|folder| name.starts_with(folder)) {
+        if MAY_NAME.iter().any(|place| name.starts_with(place)) {
             continue;
         }
         let text = std::fs::read_to_string(&path).unwrap();
-        for line in names_of_methods(&code(&text)) {
+        for line in names_of_methods(&code(&text), &name) {
             let is_other =
                 |(file, text, _): &(&str, &str, &str)| *file == name && line.contains(text);
             if OTHER_MEANINGS.iter().any(is_other) {
@@ -558,22 +648,44 @@ fn no_other_source_file_names_a_method() {
 
 #[test]
 fn names_of_methods_are_found() {
+    let found = |text: &str, place: &str| !names_of_methods(&code(text), place).is_empty();
     for text in [
         "let a = \"planes\";",
         "use crate::methods::planes;",
         "use crate::methods::{self, planes::SLICING};",
         "methods::level_map::METHOD.name",
+        "let a = is_volumetric(facts);",
+        "enum Kind { Volumetric, Other }",
+        "#import \"methods/planes/anything.wgsl\"",
+        "\"slice_deposit\" => 3,",
+        "struct PlaneDeposit;",
     ] {
-        assert_eq!(names_of_methods(&code(text)).len(), 1, "{text}");
+        assert!(found(text, "src/plan/mod.rs"), "{text}");
     }
     for text in [
         "// as \"planes\" does",
         "    /// See `methods::planes`.",
         "call(); // methods::planes",
+        "    plane: u32,     // the current plane (volumetric)",
         "use crate::methods::planes_of;",
         "use crate::stages::level_map;",
+        "use super::level_map;",
         "let a = \"planes_main\";",
+        "let planes = stats.planes;",
     ] {
-        assert!(names_of_methods(&code(text)).is_empty(), "{text}");
+        assert!(!found(text, "src/stages/mod.rs"), "{text}");
+    }
+    // A method may name itself, and no other.
+    for (text, own, other) in [
+        ("use super::planes::SMART;", "planes", "volumetric"),
+        ("fn volumetric_main() {}", "volumetric", "planes"),
+        ("\"level_map\"", "level_map", "planes"),
+    ] {
+        for top in ["src", "shaders"] {
+            let place = |folder: &str| format!("{top}/methods/{folder}/file");
+            assert!(!found(text, &place(own)), "{text}");
+            let is_path_in_wgsl = top == "shaders" && text.contains("super::");
+            assert_eq!(found(text, &place(other)), !is_path_in_wgsl, "{text}");
+        }
     }
 }

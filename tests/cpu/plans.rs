@@ -107,6 +107,7 @@ fn light_passes() -> Vec<&'static str> {
     passes_of(&[
         Scope::BeamSet,
         Scope::FineBeamSet,
+        Scope::BeamSetMaps,
         Scope::CoarseBeamSet,
         Scope::Estimate,
     ])
@@ -162,14 +163,15 @@ fn a_full_scene_needs_every_pass() {
         ("water", steep),
     ]);
     let all: Vec<&str> = default_passes().iter().map(|pass| pass.name).collect();
-    // Points are what the pixels see.
+    // Points are what the pixels see, and the method does not compute their irradiance itself.
+    let others = ["texel_points", "sky_and_air_lights"];
     let needed: Vec<&str> = all
         .into_iter()
-        .filter(|name| *name != "texel_points")
+        .filter(|name| !others.contains(name))
         .collect();
     assert_eq!(names(&plan), needed);
     let absent: Vec<&str> = plan.absent.iter().map(|pass| pass.name.as_str()).collect();
-    assert_eq!(absent, ["texel_points"]);
+    assert_eq!(absent, others);
     assert!(plan.passes.iter().all(|pass| !pass.reason.is_empty()));
 }
 
@@ -521,9 +523,45 @@ fn a_pass_without_its_source_is_an_error() {
         list.retain(|pass| pass.name != gone);
         let error =
             plan::plan(&list, &facts, Wanted::Frame, &FakeCache { full: false }).unwrap_err();
-        let PlanError::NothingWrites { slot, .. } = error;
-        assert!(!slot.is_empty(), "{gone}");
+        let has_name = matches!(error, PlanError::NothingWrites { slot, .. } if !slot.is_empty());
+        assert!(has_name, "{gone}: {error}");
     }
+    // What is requested needs a pass that makes it.
+    let mut list = default_passes();
+    list.retain(|pass| pass.name != "irradiance");
+    let mut scene = pool();
+    scene["output"] = json!({ "kind": "irradiance_map", "receiver": 0 });
+    let facts = methods::facts(&scene_files::scene(scene)).unwrap();
+    let error = plan::plan(&list, &facts, Wanted::Frame, &FakeCache { full: false }).unwrap_err();
+    let expected = PlanError::NothingMakes { slot: "irradiance" };
+    assert_eq!(error, expected);
+}
+
+/// The scope decides when a pass runs, not only its place in the list.
+#[test]
+fn a_pass_of_an_earlier_scope_cannot_read_what_comes_later() {
+    static EARLY: Pass = Pass {
+        name: "early",
+        shader: "none.wgsl",
+        reads: &[&stages::beams::BEAMS],
+        reads_if_present: &[],
+        writes: &[&stages::split::SPLIT_QUEUE],
+        uniforms: &[],
+        views: &[],
+        wanted: |_| Ok("a test".to_owned()),
+        steps: stages::Steps::Frame(|_| Vec::new()),
+        work: |_| 0.0,
+    };
+    let facts = methods::facts(&scene_files::scene(pool())).unwrap();
+    let mut list = default_passes();
+    let place = list.iter().position(|pass| pass.name == "hits").unwrap();
+    list.insert(place, &EARLY);
+    let error = plan::plan(&list, &facts, Wanted::Frame, &FakeCache { full: false }).unwrap_err();
+    let expected = PlanError::NothingWrites {
+        pass: "early",
+        slot: "beams",
+    };
+    assert_eq!(error, expected);
 }
 
 #[test]
@@ -679,5 +717,21 @@ fn sums_of_planes_are_wide() {
         scene["quality"] = quality;
         let facts = methods::facts(&scene_files::scene(scene.clone())).unwrap();
         assert_eq!(stages::light::needs_wide_sums(&facts, 0), wide);
+    }
+}
+
+#[test]
+fn steps_of_another_scope_are_an_error() {
+    let facts = methods::facts(&scene_files::scene(pool())).unwrap();
+    let set = BeamSetRun {
+        index: 0,
+        wide_sums: false,
+    };
+    let steps = &stages::beams::PASS.steps;
+    assert!(steps.of(&facts, Run::BeamSet(set)).is_ok());
+    for run in [Run::Frame, Run::Estimate] {
+        let error = steps.of(&facts, run).err().expect("another scope");
+        assert_eq!(error.scope, Scope::BeamSet);
+        assert!(error.to_string().contains(error.run), "{error}");
     }
 }

@@ -1,4 +1,5 @@
-//! Dependencies between the rooms (the folders and files directly under `src/`), read from the sources.
+//! Dependencies between the rooms (the folders and files directly under `src/`), read from the sources and compared with the table
+//! in `src/lib.rs`.
 //!
 //! A use is a path that starts at the root of the crate: `crate::…`, alone or in groups, or as many `super::` as lead there.
 //! Comments and strings are ignored.
@@ -278,6 +279,23 @@ fn circle(uses: &Uses) -> Option<String> {
     })
 }
 
+/// The rooms in the order of the table in `src/lib.rs`, from its text.
+fn table(text: &str) -> Vec<&str> {
+    text.lines()
+        .filter_map(|line| line.strip_prefix("//! | [`")?.split_once("`] | "))
+        .map(|(room, _)| room)
+        .collect()
+}
+
+/// A use of a room that does not stand below its user in `order`, as `a → b` with the file of the use.
+fn upward_use(uses: &Uses, order: &[&str]) -> Option<String> {
+    let row = |room: &str| order.iter().position(|listed| *listed == room);
+    uses.iter().find_map(|(room, used)| {
+        let (above, file) = used.iter().find(|(next, _)| row(next) < row(room))?;
+        Some(format!("{room} → {above} ({file})"))
+    })
+}
+
 #[test]
 fn the_reference_stands_alone() {
     let uses = uses(&sources());
@@ -313,6 +331,20 @@ fn rooms_are_in_no_circle() {
     let uses = uses(&sources());
     if let Some(circle) = circle(&uses) {
         panic!("rooms that use each other in a circle: {circle}");
+    }
+}
+
+#[test]
+fn rooms_use_only_rooms_below_them_in_the_table() {
+    let text = std::fs::read_to_string(folder().join("lib.rs")).unwrap();
+    let (order, sources) = (table(&text), sources());
+    let mut listed = order.clone();
+    listed.sort_unstable();
+    let rooms: BTreeSet<&str> = sources.iter().map(Source::room).collect();
+    let rooms: Vec<&str> = rooms.into_iter().collect();
+    assert_eq!(listed, rooms, "src/lib.rs lists every room once");
+    if let Some(upward) = upward_use(&uses(&sources), &order) {
+        panic!("a room uses a room above it in the table of src/lib.rs: {upward}");
     }
 }
 
@@ -404,4 +436,15 @@ fn circles_are_found() {
         None,
         "a room may use itself"
     );
+}
+
+#[test]
+fn upward_uses_are_found() {
+    let lib = "//! | room | holds |\n//! |---|---|\n//! | [`a`] | x |\n//! | [`b`] | see [`c`] |\npub mod a;";
+    assert_eq!(table(lib), ["a", "b"]);
+    let sources = [source("a.rs", "use crate::b;"), source("b/x.rs", "")];
+    let uses = uses(&sources);
+    assert_eq!(upward_use(&uses, &["a", "b"]), None);
+    let found = upward_use(&uses, &["b", "a"]);
+    assert_eq!(found.as_deref(), Some("a → b (a.rs)"));
 }

@@ -325,7 +325,7 @@ fn own_run<'a>(pass: &Pass, level_map: &'a LevelMapRun, facts: &'a SceneFacts) -
     match pass.steps.scope() {
         Scope::Frame => Run::Frame,
         Scope::LevelMap => Run::LevelMap(level_map),
-        Scope::BeamSet | Scope::FineBeamSet => Run::BeamSet(SET),
+        Scope::BeamSet | Scope::FineBeamSet | Scope::BeamSetMaps => Run::BeamSet(SET),
         Scope::CoarseBeamSet => Run::CoarseBeamSet(SET, facts),
         Scope::Estimate => Run::Estimate,
         Scope::Band => Run::Band(BAND),

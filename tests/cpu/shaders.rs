@@ -8,7 +8,7 @@ use caustica::gpu::{GpuError, pieces};
 use caustica::graph::Layout;
 use caustica::methods;
 use caustica::physics::registry;
-use caustica::stages::{Pass, Slot};
+use caustica::stages::Slot;
 use wgpu::naga;
 use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
 
@@ -228,18 +228,6 @@ fn samples_keep_to_the_domain_and_reach_its_edges() {
     }
 }
 
-/// Texture variables of a pass's steps that have names of their own.
-fn views_of(pass: &Pass) -> BTreeSet<&'static str> {
-    VIEWS
-        .iter()
-        .filter(|(name, _)| *name == pass.name)
-        .map(|(_, view)| *view)
-        .collect()
-}
-
-/// Passes and the texture variables that their steps bind to one layer of a slot under another name.
-const VIEWS: [(&str, &str); 2] = [("level_map", "previous_depth"), ("slice_deposit", "slice")];
-
 /// Every variable that a pass binds is a slot it declares, a uniform of it or a view of its steps; every slot that it says it reads or
 /// writes is bound, or drawn into; and what it writes is among its writes.
 #[test]
@@ -251,7 +239,7 @@ fn passes_bind_what_they_declare_and_declare_what_they_bind() {
         let slots: BTreeSet<&str> = pass.slots().map(|slot| slot.name).collect();
         let written: BTreeSet<&str> = pass.writes.iter().map(|slot| slot.name).collect();
         let uniforms: BTreeSet<&str> = pass.uniforms.iter().map(|(name, _)| *name).collect();
-        let views = views_of(pass);
+        let mut bound_views = BTreeSet::new();
         let (mut bound_slots, mut bound_uniforms) = (BTreeSet::new(), BTreeSet::new());
         for (index, entry) in module.ir.entry_points.iter().enumerate() {
             let context = format!("{} in {path}", entry.name);
@@ -265,8 +253,11 @@ fn passes_bind_what_they_declare_and_declare_what_they_bind() {
                         bound_uniforms.insert(bound.name.clone());
                     }
                     Access::Texture { .. } | Access::StorageTexture { .. } => {
-                        let known = slots.contains(name) || views.contains(name);
-                        assert!(known, "{name} of {context}");
+                        let is_view = pass.views.contains(&name);
+                        assert!(slots.contains(name) || is_view, "{name} of {context}");
+                        if is_view {
+                            bound_views.insert(bound.name.clone());
+                        }
                         bound_slots.insert(bound.name.clone());
                     }
                     Access::StorageRead | Access::StorageWrite => {
@@ -300,6 +291,9 @@ fn passes_bind_what_they_declare_and_declare_what_they_bind() {
                 pass.name
             );
         }
+        for view in pass.views {
+            assert!(bound_views.contains(*view), "{view} of {}", pass.name);
+        }
         for uniform in uniforms {
             assert!(
                 bound_uniforms.contains(uniform),
@@ -329,7 +323,7 @@ fn slot_names_are_unique() {
     assert!(known.len() > 20, "{}", known.len());
 }
 
-/// A workgroup that is told where it is reads nothing else, and every entry point that reads where it is can be told.
+/// Every compute entry point that takes builtins can be rewritten to run in pieces, and binds the piece's offset as a uniform.
 #[test]
 fn every_compute_entry_can_be_run_in_pieces() {
     let mut cut = 0;
@@ -338,10 +332,10 @@ fn every_compute_entry_can_be_run_in_pieces() {
             if entry.stage != naga::ShaderStage::Compute || entry.function.arguments.is_empty() {
                 continue;
             }
-            let told = pieces::with_piece_offset(&module, path, &entry.name)
+            let piece = pieces::with_piece_offset(&module, path, &entry.name)
                 .unwrap_or_else(|error| panic!("{error}"));
-            let told = Module::parse(path, told).unwrap_or_else(|error| panic!("{error}"));
-            let bound = told.bindings(path, &entry.name).unwrap();
+            let piece = Module::parse(path, piece).unwrap_or_else(|error| panic!("{error}"));
+            let bound = piece.bindings(path, &entry.name).unwrap();
             let uniform = bound.iter().find(|bound| bound.name == pieces::PIECE);
             assert_eq!(
                 uniform.map(|bound| bound.access),

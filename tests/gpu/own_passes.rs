@@ -4,11 +4,13 @@
 
 use caustica::config::RenderConfig;
 use caustica::facts::Product;
+use caustica::frame::Frame;
 use caustica::gpu_struct;
 use caustica::graph::Layout;
 use caustica::methods;
 use caustica::render::{Prepared, Renderer};
 use caustica::scene::LayerName;
+use caustica::stages::beams::BEAMS;
 use caustica::stages::points::{POINT_IRRADIANCE, POINTS, size};
 use caustica::stages::surface::wanted_for_light;
 use caustica::stages::{self, Groups, Pass, Slot, Step, Steps};
@@ -28,6 +30,7 @@ static FACTOR_PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&FACTOR],
     uniforms: &[],
+    views: &[],
     wanted: wanted_for_light,
     steps: Steps::Frame(|_| {
         vec![Step::compute(
@@ -44,9 +47,9 @@ gpu_struct! {
     pub Power = "Power" {
         power: [f32; 4],
         points: u32,
-        adds: u32,
         pad_0: u32,
         pad_1: u32,
+        pad_2: u32,
     }
 }
 
@@ -56,10 +59,11 @@ const POWER: Layout = Power::LAYOUT;
 static POWER_PASS: Pass = Pass {
     name: "power",
     shader: "methods/own/power.wgsl",
-    reads: &[&POINTS, &FACTOR],
+    reads: &[&POINTS, &FACTOR, &BEAMS],
     reads_if_present: &[],
     writes: &[&POINT_IRRADIANCE],
     uniforms: &[("power", POWER)],
+    views: &[],
     wanted: wanted_for_light,
     steps: Steps::BandBeamSet(|facts, band, set| {
         let [width, _] = size(facts).unwrap();
@@ -68,9 +72,9 @@ static POWER_PASS: Pass = Pass {
         let uniform = Power {
             power: [power[0], power[1], power[2], 0.0],
             points,
-            adds: u32::from(set.index > 0),
             pad_0: 0,
             pad_1: 0,
+            pad_2: 0,
         };
         let uniforms = vec![("power", bytemuck::bytes_of(&uniform).to_vec())];
         let groups = Groups::Direct([points.div_ceil(64), 1, 1]);
@@ -86,29 +90,43 @@ const FACTOR_SHADER: &str = "
 
 const POWER_SHADER: &str = "
 #import \"shared/points.wgsl\"
-struct Power { power: vec4f, points: u32, adds: u32, pad_0: u32, pad_1: u32 }
+struct Power { power: vec4f, points: u32, pad_0: u32, pad_1: u32, pad_2: u32 }
 @group(0) @binding(0) var<uniform> power: Power;
 @group(0) @binding(1) var<storage, read> points: array<Point>;
 @group(0) @binding(2) var<storage, read> factor: array<f32>;
-@group(0) @binding(3) var<storage, read_write> point_irradiance: array<vec4f>;
+@group(0) @binding(3) var<storage, read> beams: array<vec4f>;
+@group(0) @binding(4) var<storage, read_write> point_irradiance: array<vec4f>;
 @compute @workgroup_size(64) fn power_main(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= power.points { return; }
-    var light = vec4f(0.0);
-    if points[id.x].receiver >= 0.0 { light = vec4f(power.power.xyz * factor[0], 0.0); }
-    if power.adds == 1u { light += point_irradiance[id.x]; }
-    point_irradiance[id.x] = light;
+    if id.x >= power.points || points[id.x].receiver < 0.0 { return; }
+    // The first vertex of the set's rays: they were traced, whoever reads them.
+    if beams[0].w == 0.0 { return; }
+    point_irradiance[id.x] += vec4f(power.power.xyz * factor[0], 0.0);
 }
 ";
 
-fn prepared(output: Value) -> Prepared {
+/// A scene with a floor, a box under water and a box above it.
+fn prepared(suns: usize, has_sky: bool, output: &Value) -> Prepared {
+    let mut lights = vec![
+        json!({ "kind": "sun", "elevation_deg": 55, "irradiance_w_m2": [100, 90, 80] }),
+        json!({ "kind": "sun", "elevation_deg": 35, "irradiance_w_m2": [10, 20, 30] }),
+    ];
+    lights.truncate(suns);
+    if has_sky {
+        lights.push(json!({ "kind": "sky", "radiance_w_m2_sr": [3, 4, 5] }));
+    }
+    let mut output = output.clone();
+    if output["kind"] == "irradiance_map" {
+        output["include_sky"] = json!(has_sky);
+    }
     let resolved = scene_files::scene(json!({
         "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 0.9 }] },
         "floor": { "depth_m": 2, "size_m": [6, 6] },
-        "lights": [
-            { "kind": "sun", "elevation_deg": 55, "irradiance_w_m2": [100, 90, 80] },
-            { "kind": "sun", "elevation_deg": 35, "irradiance_w_m2": [10, 20, 30] }
+        "lights": lights,
+        "objects": [
+            { "mesh": "box.obj", "translation_m": [0.5, -1.4, 0], "scale": 0.4 },
+            { "mesh": "box.obj", "translation_m": [-0.5, 0.5, 0], "scale": 0.4 }
         ],
-        "camera": { "position_m": [0, 2.5, 3], "target_m": [0, -1.2, 0] },
+        "camera": { "position_m": [0, 2.5, 3], "target_m": [0, -0.5, 0] },
         "quality": { "water_cells": 32 },
         "output": output
     }));
@@ -123,39 +141,78 @@ fn prepared(output: Value) -> Prepared {
         .with_facts(|facts| facts.method.product = Product::PointIrradiance)
 }
 
-#[test]
-fn what_is_found_at_points_makes_pictures_and_maps() {
+fn outputs() -> [Value; 2] {
+    [
+        json!({ "kind": "irradiance_map", "receiver": "floor", "width": 40, "height": 30 }),
+        json!({ "kind": "view", "width": 64, "height": 48, "layers": ["irradiance", "radiance"], "format": "exr" }),
+    ]
+}
+
+fn renderer() -> Renderer {
     let sources = methods::embedded()
         .with_file("methods/own/factor.wgsl", FACTOR_SHADER)
         .with_file("methods/own/power.wgsl", POWER_SHADER);
-    let mut renderer = Renderer::with_shaders(&RenderConfig::default(), sources).unwrap();
-    // Half of both suns.
-    let due = [55.0, 55.0, 55.0];
-    let map = json!({ "kind": "irradiance_map", "receiver": "floor", "width": 40, "height": 30 });
-    let view = json!({ "kind": "view", "width": 64, "height": 48, "layers": ["irradiance", "radiance"], "format": "exr" });
-    for output in [map, view] {
-        let prepared = prepared(output.clone());
-        let frame = renderer
-            .render_prepared(&prepared, &CancellationToken::new())
-            .unwrap_or_else(|error| panic!("{error}"));
-        renderer.gpu().check().unwrap();
-        let texels = harness::layer(&frame, LayerName::Irradiance);
-        let lit = texels.iter().filter(|texel| **texel == due).count();
-        let dark = texels.iter().filter(|texel| **texel == [0.0; 3]).count();
-        assert_eq!(lit + dark, texels.len(), "{output}");
-        assert!(lit > 1000, "{output}: {lit} of {}", texels.len());
-        let runs = |name: &str| {
-            let found = frame.stats.passes.iter().find(|pass| pass.name == name);
-            found.map_or(0, |pass| pass.runs)
-        };
-        assert_eq!([runs("factor"), runs("power")], [1, 2]);
-        // Nothing of the receivers' maps is planned for a method that has none.
-        for absent in ["deposit", "irradiance", "camera_irradiance"] {
-            assert_eq!(runs(absent), 0, "{absent}");
+    Renderer::with_shaders(&RenderConfig::default(), sources).unwrap()
+}
+
+fn render(renderer: &mut Renderer, prepared: &Prepared) -> Frame {
+    let frame = renderer.render_prepared(prepared, &CancellationToken::new());
+    renderer.gpu().check().unwrap();
+    frame.unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn what_is_found_at_points_makes_pictures_and_maps() {
+    for output in outputs() {
+        for (count, half) in [(0, [0.0; 3]), (1, [50.0, 45.0, 40.0]), (2, [55.0; 3])] {
+            // Without the caches of other frames, so that its peak is its own.
+            let frame = render(&mut renderer(), &prepared(count, false, &output));
+            let texels = harness::layer(&frame, LayerName::Irradiance);
+            let due = texels.iter().filter(|texel| **texel == half).count();
+            assert!(due > 900, "{count} suns, {output}: {due}");
+            let runs = |name: &str| {
+                let found = frame.stats.passes.iter().find(|pass| pass.name == name);
+                found.map_or(0, |pass| pass.runs)
+            };
+            let once = u32::from(count > 0);
+            let expected = [once, count as u32, count as u32];
+            assert_eq!([runs("factor"), runs("beams"), runs("power")], expected);
+            // Nothing of the receivers' maps is planned for a method that has none.
+            for absent in ["deposit", "irradiance", "camera_irradiance"] {
+                assert_eq!(runs(absent), 0, "{absent}");
+            }
+            assert_eq!(
+                frame.stats.memory.peak_bytes,
+                frame.stats.memory.planned_peak_bytes
+            );
         }
-        assert_eq!(
-            frame.stats.memory.peak_bytes,
-            frame.stats.memory.planned_peak_bytes
-        );
+    }
+}
+
+/// The sky, and the suns on the dry box, are the same whatever the method: a method at points need not add them.
+#[test]
+fn sky_and_dry_surfaces_are_lit_as_with_a_method_of_maps() {
+    let mut own = renderer();
+    let mut default = harness::renderer();
+    for output in outputs() {
+        for count in [0, 1] {
+            let prepared = prepared(count, true, &output);
+            let found = render(&mut own, &prepared);
+            let whole = render(
+                &mut default,
+                &Prepared::new(prepared.resolved().clone()).unwrap(),
+            );
+            let [found, whole] = [&found, &whole].map(|f| harness::layer(f, LayerName::Irradiance));
+            let same = found.iter().zip(&whole).filter(|(a, b)| a == b).count();
+            if count == 0 {
+                assert_eq!(same, found.len(), "{output}: only the sky");
+                assert!(found.iter().any(|texel| texel[2] > 1.0), "{output}");
+            } else if output["kind"] == "view" {
+                // Only the dry box is lit alike; by the sun of 100 W/m² it is brighter than by the sky.
+                let bright = |(a, b): &(&[f64; 3], &[f64; 3])| a == b && a[0] > 30.0;
+                let dry = found.iter().zip(&whole).filter(bright).count();
+                assert!(dry > 20, "{dry}");
+            }
+        }
     }
 }

@@ -190,12 +190,12 @@ async fn with_route(service: &Service, handler: MethodRouter<AppState>) -> Reply
 #[tokio::test]
 async fn a_panic_in_a_handler_is_an_answer() {
     async fn panics() -> &'static str {
-        panic!("the detail")
+        panic!("a private cause")
     }
     let service = Service::start().await;
     let reply = with_route(&service, routing::get(panics)).await;
     let problem = reply.problem(ProblemKind::Internal);
-    assert!(!problem.detail.contains("the detail"));
+    assert!(!problem.detail.contains("a private cause"));
     service.assert_whole().await;
 }
 

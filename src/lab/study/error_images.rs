@@ -7,7 +7,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::colour_map::{diverging, magma};
 use super::plot::PlotError;
-use super::plot::canvas::TextLook;
+use super::plot::canvas::TextStyle;
 use super::plot::palette::{INK, SOFT_INK};
 use super::resize::Fit;
 use super::sheet::{Caption, Sheet, Tile};
@@ -288,7 +288,7 @@ fn lay_bars(sheet: &mut Sheet, layout: Layout, scale: f64) {
             sheet.write(Caption {
                 text: text.to_owned(),
                 spot: (left, top + 8.0 + 17.0 * line as f64),
-                look: TextLook::new(13.0, INK),
+                style: TextStyle::new(13.0, INK),
                 width: width as f64,
             });
         }
@@ -298,7 +298,7 @@ fn lay_bars(sheet: &mut Sheet, layout: Layout, scale: f64) {
             sheet.write(Caption {
                 text,
                 spot: (left + place * width as f64, top + 68.0),
-                look: TextLook::new(12.0, SOFT_INK).at(h, VPos::Center),
+                style: TextStyle::new(12.0, SOFT_INK).at(h, VPos::Center),
                 width: width as f64,
             });
         }
@@ -308,11 +308,11 @@ fn lay_bars(sheet: &mut Sheet, layout: Layout, scale: f64) {
 fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index: usize) {
     let sweep = &study.sweeps[sweep_index];
     let wide = (layout.width() - 2 * MARGIN) as f64;
-    let mut write = |text: String, (x, y): (f64, f64), look: TextLook, width: f64| {
+    let mut write = |text: String, (x, y): (f64, f64), style: TextStyle, width: f64| {
         sheet.write(Caption {
             text,
             spot: (x, y),
-            look,
+            style,
             width,
         });
     };
@@ -321,10 +321,10 @@ fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index:
     if !study.scene.is_empty() {
         title += &format!(": {}", study.scene);
     }
-    write(title, (left, 28.0), TextLook::new(19.0, INK), wide);
+    write(title, (left, 28.0), TextStyle::new(19.0, INK), wide);
 
     let narrow = layout.column_width() as f64;
-    let (strong, soft) = (TextLook::new(14.0, INK), TextLook::new(12.0, SOFT_INK));
+    let (strong, soft) = (TextStyle::new(14.0, INK), TextStyle::new(12.0, SOFT_INK));
     let y = TITLE as f64;
     let truth = format!("own error {}", words::percent(study.truth.relative_error));
     write("truth".to_owned(), (left, y + 8.0), strong, narrow);

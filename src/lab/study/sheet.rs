@@ -4,7 +4,7 @@ use plotters::prelude::{BitMapBackend, DrawingBackend};
 use plotters::style::text_anchor::HPos;
 
 use super::plot::PlotError;
-use super::plot::canvas::{Canvas, Spot, TextLook};
+use super::plot::canvas::{Canvas, Spot, TextStyle};
 use super::plot::output::{FINE, averaged, png_file};
 
 /// A picture of pixels, row by row from the top, sRGB.
@@ -20,7 +20,7 @@ pub(super) struct Caption {
     pub text: String,
     pub spot: Spot,
     /// Level, and centred about its height.
-    pub look: TextLook,
+    pub style: TextStyle,
     /// It ends in an ellipsis where it is wider, pixels.
     pub width: f64,
 }
@@ -76,7 +76,7 @@ impl Sheet {
 
     /// Prints a caption, drawn fine and averaged: the library sets letters on whole pixels, which shows in small texts.
     fn stamp(&mut self, caption: &Caption) -> Result<(), PlotError> {
-        let (size, fine) = (caption.look.size, FINE as usize);
+        let (size, fine) = (caption.style.size, FINE as usize);
         let height = (2.0 * size).ceil() as usize;
         let (text, width) = measured(caption)?;
         let (across, down) = (width * fine, height * fine);
@@ -84,14 +84,14 @@ impl Sheet {
         {
             let mut backend = BitMapBackend::with_buffer(&mut bytes, (across as u32, down as u32));
             let mut canvas = Canvas::new(&mut backend, f64::from(FINE))?;
-            let look = TextLook::new(size, caption.look.colour);
-            canvas.text(&text, (0.0, size), look)?;
+            let style = TextStyle::new(size, caption.style.colour);
+            canvas.text(&text, (0.0, size), style)?;
             backend
                 .present()
                 .map_err(|error| PlotError::Draw(error.to_string()))?;
         }
         let print = averaged(&bytes, across, fine);
-        let left = match caption.look.h {
+        let left = match caption.style.h {
             HPos::Left => caption.spot.0,
             HPos::Center => caption.spot.0 - 0.5 * width as f64,
             HPos::Right => caption.spot.0 - width as f64,
@@ -127,7 +127,7 @@ fn measured(caption: &Caption) -> Result<(String, usize), PlotError> {
     let mut none = [0; 3];
     let mut backend = BitMapBackend::with_buffer(&mut none, (1, 1));
     let canvas = Canvas::new(&mut backend, f64::from(FINE))?;
-    let text = canvas.fitted(&caption.text, caption.look.size, caption.width)?;
-    let width = canvas.text_width(&text, caption.look.size)?.ceil() as usize + 1;
+    let text = canvas.fitted(&caption.text, caption.style.size, caption.width)?;
+    let width = canvas.text_width(&text, caption.style.size)?.ceil() as usize + 1;
     Ok((text, width))
 }

@@ -2,11 +2,10 @@
 //! interval holds a texel of the level map, otherwise all planes. Also lists, per tile of the map, the planes near the surface.
 
 use crate::stages::level_map::LEVEL_MAPS;
-use crate::stages::light::Light;
 use crate::stages::queues::MOST_GROUPS;
 use crate::stages::receivers::RECEIVERS;
 use crate::stages::reference_planes::{
-    PLANE_LISTS, PLANE_TILE_TEXELS, Planes, objects_of, plane_uniforms, wanted_for_planes,
+    PLANE_LISTS, PLANE_TILE_TEXELS, Planes, objects_of, planes_uniform, wanted_for_planes,
 };
 use crate::stages::{Groups, Pass, Step, Steps};
 
@@ -20,7 +19,8 @@ pub static PASS: Pass = Pass {
     reads: &[&RECEIVERS, &LEVEL_MAPS],
     reads_if_present: &[],
     writes: &[&PLANE_LISTS],
-    uniforms: &[("light", Light::LAYOUT), ("planes", Planes::LAYOUT)],
+    uniforms: &[("planes", Planes::LAYOUT)],
+    views: &[],
     wanted: |facts| {
         wanted_for_planes(facts)?;
         let planes = facts.method.reference_planes;
@@ -34,7 +34,7 @@ pub static PASS: Pass = Pass {
         let mut steps = Vec::new();
         for (object, texels) in objects_of(facts, set.index) {
             let mut add = |entry, groups| {
-                let uniforms = plane_uniforms(facts, set, (object, 0));
+                let uniforms = vec![("planes", planes_uniform(facts, object, 0))];
                 steps.push(Step::compute(entry, Groups::Direct(groups), uniforms));
             };
             if facts.method.skips_empty_planes {

@@ -21,6 +21,7 @@ pub static PASS: Pass = Pass {
     reads_if_present: &[],
     writes: &[&FLUX, &ENERGY, &BEAM_QUEUE, &PLANE_COUNTS],
     uniforms: &[("light", Light::LAYOUT), ("planes", Planes::LAYOUT)],
+    views: &[],
     wanted: |facts| {
         let objects = wanted_for_planes(facts)?;
         Ok(format!(

@@ -84,6 +84,7 @@ pub static PASS: Pass = Pass {
         ("planes", Planes::LAYOUT),
         ("level_map_view", LevelMapView::LAYOUT),
     ],
+    views: &["slice"],
     wanted: |facts| {
         let objects = wanted_for_planes(facts)?;
         Ok(format!(

@@ -2,7 +2,7 @@
 
 use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontTransform, IntoFont, RGBColor, ShapeStyle, TextStyle};
+use plotters::style::{Color, FontTransform, IntoFont, RGBColor, ShapeStyle};
 
 use super::error::PlotError;
 use super::font;
@@ -16,19 +16,19 @@ const LINE_PER_EM: f64 = 1.24;
 /// How far the library sets centred text too high, in ems: its bitmaps by 0.22, its SVG files by 0.1. The mean of both.
 const CENTRE_LIFT: f64 = 0.16;
 
-/// How a text stands at its spot.
+/// Size, colour, anchor and direction of a text.
 #[derive(Clone, Copy)]
-pub(in crate::lab::study) struct TextLook {
+pub(in crate::lab::study) struct TextStyle {
     /// Em size, logical pixels.
     pub size: f64,
     pub colour: RGBColor,
     pub h: HPos,
     pub v: VPos,
-    /// Whether it reads from bottom to top.
+    /// Whether the text reads from bottom to top.
     pub upright: bool,
 }
 
-impl TextLook {
+impl TextStyle {
     /// Level text, anchored at its left end, halfway up.
     pub(in crate::lab::study) fn new(size: f64, colour: RGBColor) -> Self {
         Self {
@@ -164,19 +164,19 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
         &mut self,
         text: &str,
         spot: Spot,
-        look: TextLook,
+        style: TextStyle,
     ) -> Result<(), PlotError> {
-        let lift = match look.v {
-            VPos::Center => CENTRE_LIFT * look.size,
+        let lift = match style.v {
+            VPos::Center => CENTRE_LIFT * style.size,
             _ => 0.0,
         };
         // The foot of upright text points to the right.
-        let spot = if look.upright {
+        let spot = if style.upright {
             (spot.0 + lift, spot.1)
         } else {
             (spot.0, spot.1 + lift)
         };
-        let (style, spot) = (self.style(look), self.pixel(spot));
+        let (style, spot) = (self.backend_style(style), self.pixel(spot));
         self.backend.draw_text(text, &style, spot).map_err(failed)
     }
 
@@ -186,7 +186,7 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
         text: &str,
         size: f64,
     ) -> Result<f64, PlotError> {
-        let style = self.style(TextLook::new(size, super::palette::INK));
+        let style = self.backend_style(TextStyle::new(size, super::palette::INK));
         let (width, _) = self
             .backend
             .estimate_text_size(text, &style)
@@ -211,14 +211,16 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
         Ok(fitted)
     }
 
-    fn style(&self, look: TextLook) -> TextStyle<'static> {
-        let mut font = (font::FAMILY, look.size * LINE_PER_EM * self.scale).into_font();
-        if look.upright {
+    /// The same style for the drawing library.
+    fn backend_style(&self, style: TextStyle) -> plotters::style::TextStyle<'static> {
+        let mut font = (font::FAMILY, style.size * LINE_PER_EM * self.scale).into_font();
+        if style.upright {
             font = font.transform(FontTransform::Rotate270);
         }
-        let mut style = TextStyle::from(font).pos(Pos::new(look.h, look.v));
-        style.color = look.colour.to_backend_color();
-        style
+        let mut backend_style =
+            plotters::style::TextStyle::from(font).pos(Pos::new(style.h, style.v));
+        backend_style.color = style.colour.to_backend_color();
+        backend_style
     }
 }
 

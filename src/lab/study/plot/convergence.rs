@@ -4,7 +4,7 @@ use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axis::LogAxis;
-use super::canvas::{Canvas, Spot, Stroke, TextLook};
+use super::canvas::{Canvas, Spot, Stroke, TextStyle};
 use super::error::PlotError;
 use super::frame::{
     BOTTOM, Column, Frame, LABEL, LEFT, LINE, RIGHT, UPRIGHT_LABEL, UPRIGHT_ROOM, clipped,
@@ -224,8 +224,8 @@ impl Convergence<'_> {
             } else {
                 (HPos::Left, (to.0 + 6.0, to.1 - 9.0))
             };
-            let look = TextLook::new(11.0, SOFT_INK).at(h, VPos::Center);
-            canvas.text(&format!("order {order}"), spot, look)?;
+            let style = TextStyle::new(11.0, SOFT_INK).at(h, VPos::Center);
+            canvas.text(&format!("order {order}"), spot, style)?;
         }
         Ok(())
     }
@@ -243,10 +243,10 @@ impl Convergence<'_> {
         canvas.line(from, to, self.fit_stroke())?;
         let middle = (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1));
         // Towards the corner that a falling line leaves empty.
-        let look = TextLook::new(14.0, palette::sweep_ink(self.marks[0].sweep))
+        let style = TextStyle::new(14.0, palette::sweep_ink(self.marks[0].sweep))
             .at(HPos::Right, VPos::Center);
         let text = format!("order {}", significant(fit.order, 3));
-        canvas.text(&text, (middle.0 - 10.0, middle.1 + 12.0), look)
+        canvas.text(&text, (middle.0 - 10.0, middle.1 + 12.0), style)
     }
 
     /// The law of a factor per level, from setting to setting: they need not be evenly spaced.

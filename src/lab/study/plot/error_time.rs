@@ -4,7 +4,7 @@ use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axis::LogAxis;
-use super::canvas::{Canvas, Spot, Stroke, TextLook};
+use super::canvas::{Canvas, Spot, Stroke, TextStyle};
 use super::error::PlotError;
 use super::frame::{Column, Frame, LEFT, LINE, PAPER, RIGHT, draw_floor, error_axis, floor_stroke};
 use super::labels::{Area, Occupied};
@@ -157,9 +157,9 @@ impl ErrorTime<'_> {
             let width = canvas.text_width(&mark.label, LABEL_SIZE)?;
             match occupied.place(self.spot(mark), width, LABEL_SIZE) {
                 Some(centre) => {
-                    let look = TextLook::new(LABEL_SIZE, palette::sweep_ink(mark.sweep))
+                    let style = TextStyle::new(LABEL_SIZE, palette::sweep_ink(mark.sweep))
                         .at(HPos::Center, VPos::Center);
-                    canvas.text(&mark.label, centre, look)?;
+                    canvas.text(&mark.label, centre, style)?;
                 }
                 None => left_out += 1,
             }

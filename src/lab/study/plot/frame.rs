@@ -4,7 +4,7 @@ use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axis::LogAxis;
-use super::canvas::{Canvas, Spot, Stroke, TextLook};
+use super::canvas::{Canvas, Spot, Stroke, TextStyle};
 use super::error::PlotError;
 use super::labels::Area;
 use super::output::{HEIGHT, WIDTH};
@@ -69,9 +69,9 @@ impl Frame {
     ) -> Result<(), PlotError> {
         let width = LEGEND_RIGHT - LEFT;
         let title = canvas.fitted(&self.title, 20.0, width)?;
-        canvas.text(&title, (LEFT, 32.0), TextLook::new(20.0, INK))?;
+        canvas.text(&title, (LEFT, 32.0), TextStyle::new(20.0, INK))?;
         let subtitle = canvas.fitted(&self.subtitle, 13.0, width)?;
-        canvas.text(&subtitle, (LEFT, 58.0), TextLook::new(13.0, SOFT_INK))?;
+        canvas.text(&subtitle, (LEFT, 58.0), TextStyle::new(13.0, SOFT_INK))?;
         self.draw_grid(canvas)?;
 
         let axis = Stroke {
@@ -80,11 +80,11 @@ impl Frame {
         };
         canvas.line((LEFT, BOTTOM), (RIGHT, BOTTOM), axis)?;
         canvas.line((LEFT, TOP), (LEFT, BOTTOM), axis)?;
-        let middle = TextLook::new(14.0, INK).at(HPos::Center, VPos::Center);
+        let middle = TextStyle::new(14.0, INK).at(HPos::Center, VPos::Center);
         let x_title = canvas.fitted(&self.x_title, 14.0, RIGHT - LEFT)?;
         let below = (0.5 * (LEFT + RIGHT), f64::from(HEIGHT) - 16.0);
         canvas.text(&x_title, below, middle)?;
-        let upright = TextLook {
+        let upright = TextStyle {
             upright: true,
             ..middle
         };
@@ -112,10 +112,10 @@ impl Frame {
                 canvas.line((LEFT, y), (RIGHT, y), stroke(labelled))?;
             }
         }
-        let below = TextLook::new(LABEL, INK).at(HPos::Center, VPos::Top);
-        let upwards = TextLook {
+        let below = TextStyle::new(LABEL, INK).at(HPos::Center, VPos::Top);
+        let upwards = TextStyle {
             upright: true,
-            ..TextLook::new(UPRIGHT_LABEL, INK).at(HPos::Right, VPos::Center)
+            ..TextStyle::new(UPRIGHT_LABEL, INK).at(HPos::Right, VPos::Center)
         };
         for column in &self.columns {
             match &column.label {
@@ -126,7 +126,7 @@ impl Frame {
                 None => {}
             }
         }
-        let beside = TextLook::new(LABEL, INK).at(HPos::Right, VPos::Center);
+        let beside = TextStyle::new(LABEL, INK).at(HPos::Right, VPos::Center);
         for tick in ticks.iter().filter(|t| t.labelled) {
             let spot = (LEFT - 10.0, self.y.at(tick.value));
             canvas.text(&percent(tick.value), spot, beside)?;
@@ -147,8 +147,8 @@ pub(super) fn draw_floor<DB: DrawingBackend>(
     let height = y.at(truth_error);
     canvas.dashed((LEFT, height), (RIGHT, height), 6.0, floor_stroke())?;
     let text = format!("the truth's own error, {}", percent(truth_error));
-    let look = TextLook::new(12.0, FLOOR).at(HPos::Left, VPos::Center);
-    canvas.text(&text, (LEFT + 8.0, height + 10.0), look)
+    let style = TextStyle::new(12.0, FLOOR).at(HPos::Left, VPos::Center);
+    canvas.text(&text, (LEFT + 8.0, height + 10.0), style)
 }
 
 /// The stroke of the truth's own error.

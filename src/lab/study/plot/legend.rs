@@ -4,7 +4,7 @@ use plotters::prelude::DrawingBackend;
 use plotters::style::RGBColor;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::canvas::{Canvas, Stroke, TextLook};
+use super::canvas::{Canvas, Stroke, TextStyle};
 use super::error::PlotError;
 use super::frame::{LEGEND_LEFT, LEGEND_RIGHT, TOP};
 use super::marker;
@@ -53,9 +53,9 @@ pub(super) fn draw<DB: DrawingBackend>(
             Sign::Line(stroke) => canvas.line((left, y), (right, y), stroke)?,
             Sign::Dashed(stroke) => canvas.dashed((left, y), (right, y), 4.0, stroke)?,
         }
-        let look = TextLook::new(SIZE, INK);
+        let style = TextStyle::new(SIZE, INK);
         for line in wrapped(canvas, &entry.text, SIZE, LEGEND_RIGHT - right - 8.0)? {
-            canvas.text(&line, (right + 8.0, y), look)?;
+            canvas.text(&line, (right + 8.0, y), style)?;
             y += 17.0;
         }
         y += STEP - 17.0;
@@ -63,8 +63,8 @@ pub(super) fn draw<DB: DrawingBackend>(
     y += 10.0;
     for remark in remarks {
         for line in wrapped(canvas, remark, 11.0, LEGEND_RIGHT - LEGEND_LEFT)? {
-            let look = TextLook::new(11.0, SOFT_INK).at(HPos::Left, VPos::Center);
-            canvas.text(&line, (LEGEND_LEFT, y), look)?;
+            let style = TextStyle::new(11.0, SOFT_INK).at(HPos::Left, VPos::Center);
+            canvas.text(&line, (LEGEND_LEFT, y), style)?;
             y += 14.0;
         }
         y += 6.0;

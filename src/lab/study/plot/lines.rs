@@ -3,7 +3,7 @@
 use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::canvas::{Canvas, Spot, Stroke, TextLook};
+use super::canvas::{Canvas, Spot, Stroke, TextStyle};
 use super::error::PlotError;
 use super::frame::{BOTTOM, LABEL, LEFT, LEGEND_RIGHT, LINE, RIGHT, TOP};
 use super::legend::{self, Entry, Sign};
@@ -144,20 +144,20 @@ impl Lines<'_> {
     fn draw_frame<DB: DrawingBackend>(&self, canvas: &mut Canvas<'_, DB>) -> Result<(), PlotError> {
         let width = LEGEND_RIGHT - LEFT;
         let title = canvas.fitted(&self.chart.title, 20.0, width)?;
-        canvas.text(&title, (LEFT, 32.0), TextLook::new(20.0, INK))?;
+        canvas.text(&title, (LEFT, 32.0), TextStyle::new(20.0, INK))?;
         let subtitle = canvas.fitted(&self.chart.subtitle, 13.0, width)?;
-        canvas.text(&subtitle, (LEFT, 58.0), TextLook::new(13.0, SOFT_INK))?;
+        canvas.text(&subtitle, (LEFT, 58.0), TextStyle::new(13.0, SOFT_INK))?;
         let grid = Stroke {
             colour: GRID,
             width: 1.0,
         };
-        let below = TextLook::new(LABEL, INK).at(HPos::Center, VPos::Top);
+        let below = TextStyle::new(LABEL, INK).at(HPos::Center, VPos::Top);
         for tick in self.x.ticks() {
             let x = self.x.at(tick);
             canvas.line((x, TOP), (x, BOTTOM), grid)?;
             canvas.text(&significant(tick, 3), (x, BOTTOM + 10.0), below)?;
         }
-        let beside = TextLook::new(LABEL, INK).at(HPos::Right, VPos::Center);
+        let beside = TextStyle::new(LABEL, INK).at(HPos::Right, VPos::Center);
         for tick in self.y.ticks() {
             let y = self.y.at(tick);
             canvas.line((LEFT, y), (RIGHT, y), grid)?;
@@ -169,10 +169,10 @@ impl Lines<'_> {
         };
         canvas.line((LEFT, BOTTOM), (RIGHT, BOTTOM), axis)?;
         canvas.line((LEFT, TOP), (LEFT, BOTTOM), axis)?;
-        let middle = TextLook::new(14.0, INK).at(HPos::Center, VPos::Center);
+        let middle = TextStyle::new(14.0, INK).at(HPos::Center, VPos::Center);
         let bottom = (0.5 * (LEFT + RIGHT), f64::from(HEIGHT) - 16.0);
         canvas.text(&self.chart.x_title, bottom, middle)?;
-        let upright = TextLook {
+        let upright = TextStyle {
             upright: true,
             ..middle
         };

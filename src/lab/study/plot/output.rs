@@ -1,4 +1,4 @@
-//! One drawing, two files.
+//! Renders a drawing to an SVG document and a PNG file.
 
 use plotters::prelude::{BitMapBackend, DrawingBackend, SVGBackend};
 use png::{BitDepth, ColorType, Compression, SrgbRenderingIntent};
