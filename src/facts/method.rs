@@ -36,6 +36,23 @@ pub struct MethodFacts {
     pub leaves_out: LeavesOut,
 }
 
+impl MethodFacts {
+    /// A method that conserves energy, leaves nothing out, lights meshes where rays hit them, and slices no object.
+    pub fn new(name: &'static str, product: Product) -> Self {
+        Self {
+            name,
+            product,
+            conserves_energy: true,
+            lights_meshes_by_hits: true,
+            reference_planes: 0,
+            skips_empty_planes: false,
+            deposits_per_beam: 1,
+            has_scratch_map: false,
+            leaves_out: LeavesOut::default(),
+        }
+    }
+}
+
 /// Effects that a method leaves out and others simulate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LeavesOut {

@@ -71,6 +71,11 @@ impl KernelCache {
             }
         };
         let value = |name: &String| constants.iter().find(|(constant, _)| constant == name);
+        if let Some(name) = used.iter().find(|name| value(name).is_none()) {
+            return Err(GpuError::Validation(format!(
+                "`{entry}` of `{path}` has the override `{name}`, which nothing sets"
+            )));
+        }
         let constants: Vec<(&str, f64)> = used.iter().filter_map(value).copied().collect();
         let key = Key {
             path: path.to_owned(),

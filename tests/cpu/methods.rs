@@ -504,9 +504,9 @@ const OTHER_MEANINGS: [(&str, &str, &str); 5] = [
     ),
 ];
 
-/// Names of methods, and of their own files, that are words of other things too: the map of a mesh, and more than one plane. They count
-/// only in quotes and in paths.
-const COMMON_WORDS: [&str; 2] = ["level_map", "planes"];
+/// Names of methods that mean nothing else, so that they count within any identifier. Other names are words of other things too (the
+/// level map of a mesh, more than one plane) and count in quotes and in paths.
+const DISTINCTIVE: [&str; 1] = ["volumetric"];
 
 /// Places that may name any method: the list of them, and the thesis's own experiment, which compares just these. The folder of a method
 /// may name that method.
@@ -526,7 +526,8 @@ fn own_files(method: &Method) -> BTreeSet<String> {
     }
     let names = found.iter().filter_map(|path| path.file_stem()?.to_str());
     names
-        .filter(|name| *name != "mod" && !COMMON_WORDS.contains(name))
+        // Names of one word may be words of other things.
+        .filter(|name| name.contains('_'))
         .map(str::to_owned)
         .collect()
 }
@@ -580,10 +581,10 @@ fn names_it(line: &str, name: &str, files: &BTreeSet<String>) -> bool {
     if texts.iter().any(|text| line.contains(text.as_str())) {
         return true;
     }
-    let is_common = COMMON_WORDS.contains(&name);
+    let is_distinctive = DISTINCTIVE.contains(&name);
     let mut words = line.split(|c| !is_word(c)).map(folded);
     words.any(|word| {
-        let has_name = !is_common && word.contains(&folded(name));
+        let has_name = is_distinctive && word.contains(&folded(name));
         has_name || files.iter().any(|file| word == folded(file))
     })
 }

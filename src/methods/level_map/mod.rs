@@ -30,17 +30,7 @@ pub static METHOD: Method = Method {
     ],
     expected_order: 2.0,
     dials_can_be_chosen: true,
-    facts: |_| MethodFacts {
-        name: METHOD.name,
-        product: Product::ReceiverMaps,
-        conserves_energy: true,
-        lights_meshes_by_hits: true,
-        reference_planes: 0,
-        deposits_per_beam: 1,
-        skips_empty_planes: false,
-        has_scratch_map: false,
-        leaves_out: crate::facts::method::LeavesOut::default(),
-    },
+    facts: |_| MethodFacts::new(METHOD.name, Product::ReceiverMaps),
     supports: |_| Ok(()),
     conformance: Conformance {
         sine_pool_error_at_256: 5e-3,

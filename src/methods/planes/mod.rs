@@ -63,19 +63,17 @@ pub static METHOD: Method = Method {
     expected_order: 0.0,
     dials_can_be_chosen: false,
     facts: |quality| MethodFacts {
-        name: METHOD.name,
-        product: Product::ReceiverMaps,
         conserves_energy: false,
         lights_meshes_by_hits: false,
         reference_planes: PLANES.integer(quality),
         // A beam may light texels of each plane.
         deposits_per_beam: PLANES.integer(quality),
         skips_empty_planes: SLICING.word(quality) == SMART,
-        has_scratch_map: false,
         leaves_out: LeavesOut {
             shadows_on_objects: true,
             further_layers: true,
         },
+        ..MethodFacts::new(METHOD.name, Product::ReceiverMaps)
     },
     supports: |_| Ok(()),
     conformance: Conformance {
