@@ -5,6 +5,7 @@ use super::level_map::wanted_for_objects;
 use super::light::light_uniform;
 use super::maps::MapLayout;
 use super::queues::QUEUE_HEAD_WORDS;
+use super::surface::cells;
 use super::{Groups, Slot, Step};
 use crate::facts::SceneFacts;
 use crate::gpu_struct;
@@ -95,6 +96,12 @@ pub fn planes_uniform(facts: &SceneFacts, object: usize, plane: u32) -> Vec<u8> 
         smart: u32::from(facts.method.skips_empty_planes),
     };
     bytemuck::bytes_of(&uniform).to_vec()
+}
+
+/// Units of work of placing light by planes: each beam at each plane of each object.
+pub fn beams_at_planes(facts: &SceneFacts) -> f64 {
+    let objects = facts.wet_objects().count() as f64;
+    cells(facts) * f64::from(facts.method.reference_planes) * objects
 }
 
 /// The uniforms of a dispatch for an object under a beam set.

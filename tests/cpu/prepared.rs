@@ -79,6 +79,18 @@ fn the_next_moment_is_the_same_as_prepared_anew() {
     }
 }
 
+/// A mark in the facts of one moment is there in the next one's if they were reused, and is gone if they were found anew.
+#[test]
+fn facts_that_time_does_not_change_are_reused() {
+    for name in scene_files::names() {
+        let prepared = Prepared::new(scene_files::load(&name, &[])).unwrap();
+        let marked = prepared.with_facts(|facts| facts.lights.white_radiance += 1.0);
+        let mark = marked.facts().lights.white_radiance;
+        let next = marked.at(0.04).unwrap();
+        assert_eq!(next.facts().lights.white_radiance, mark, "{name}");
+    }
+}
+
 #[test]
 fn a_lamp_that_waves_rise_over_is_found_anew() {
     // A crest of 3 cm stands over the light at 2 cm; half a period later there is a trough.

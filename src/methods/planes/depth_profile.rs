@@ -48,5 +48,9 @@ pub static PASS: Pass = Pass {
         }
         steps
     }),
-    work: |_| 0.0,
+    work: |facts| {
+        let objects = facts.wet_objects();
+        let texels = objects.map(|index| facts.receivers.objects[index].map_texels);
+        texels.map(|texels| f64::from(texels).powi(2)).sum()
+    },
 };

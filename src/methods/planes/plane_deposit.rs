@@ -6,8 +6,8 @@ use crate::stages::level_map::LEVEL_MAPS;
 use crate::stages::light::Light;
 use crate::stages::receivers::RECEIVERS;
 use crate::stages::reference_planes::{
-    BEAM_QUEUE, PLANE_COUNTS, PLANE_LISTS, Planes, cull_steps, objects_of, over_queue,
-    wanted_for_planes,
+    BEAM_QUEUE, PLANE_COUNTS, PLANE_LISTS, Planes, beams_at_planes, cull_steps, objects_of,
+    over_queue, wanted_for_planes,
 };
 use crate::stages::sums::{ENERGY, FLUX};
 use crate::stages::surface::SURFACE;
@@ -39,5 +39,5 @@ pub static PASS: Pass = Pass {
             })
             .collect()
     }),
-    work: |_| 0.0,
+    work: beams_at_planes,
 };

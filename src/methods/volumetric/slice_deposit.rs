@@ -16,8 +16,8 @@ use crate::stages::maps::MapLayout;
 use crate::stages::objects::{GEOMETRY, INSTANCES};
 use crate::stages::receivers::RECEIVERS;
 use crate::stages::reference_planes::{
-    BEAM_QUEUE, PLANE_COUNTS, Planes, cull_steps, objects_of, over_queue, plane_uniforms,
-    wanted_for_planes,
+    BEAM_QUEUE, PLANE_COUNTS, Planes, beams_at_planes, cull_steps, objects_of, over_queue,
+    plane_uniforms, wanted_for_planes,
 };
 use crate::stages::sums::FLUX;
 use crate::stages::surface::SURFACE;
@@ -125,7 +125,7 @@ pub static PASS: Pass = Pass {
         }
         steps
     }),
-    work: |_| 0.0,
+    work: beams_at_planes,
 };
 
 /// Draws the part of the mesh between the midpoints from a plane to its neighbours.
