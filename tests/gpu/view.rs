@@ -454,7 +454,7 @@ fn along_the_sea(down_m: f64) -> Value {
 
 #[test]
 fn pixels_whose_path_along_the_waves_is_not_followed_to_its_end_are_warned_of() {
-    let told = |scene: Value| -> Option<u64> {
+    let count = |scene: Value| -> Option<u64> {
         let frame = frame(scene);
         let mut warnings = frame.stats.warnings.iter();
         let found = warnings.find(|w| w.code == "pixels_along_water")?;
@@ -465,15 +465,15 @@ fn pixels_whose_path_along_the_waves_is_not_followed_to_its_end_are_warned_of() 
         assert!((share - 100.0 * count as f64 / pixels).abs() < 1e-3);
         Some(count)
     };
-    let one = told(along_the_sea(0.02)).expect("pixels at the horizon");
+    let one = count(along_the_sea(0.02)).expect("pixels at the horizon");
     assert!(one < 48 * 32 / 4, "{one} pixels");
     // Sixteen rays per pixel: no pixel counts twice, and neighbours of those from before may join.
     let mut many = along_the_sea(0.02);
     many["quality"]["pixel_samples"] = json!(4);
-    let of_many = told(many).expect("pixels at the horizon");
+    let of_many = count(many).expect("pixels at the horizon");
     assert!(
         of_many >= one / 2 && of_many < 4 * one + 100,
         "{of_many}, {one}"
     );
-    assert_eq!(told(along_the_sea(3.0)), None);
+    assert_eq!(count(along_the_sea(3.0)), None);
 }
