@@ -6,7 +6,7 @@ use caustica::config::RenderConfig;
 use caustica::facts::Product;
 use caustica::frame::Frame;
 use caustica::gpu_struct;
-use caustica::graph::Layout;
+use caustica::graph::{Layout, Texture};
 use caustica::methods;
 use caustica::render::{Prepared, Renderer};
 use caustica::scene::LayerName;
@@ -19,8 +19,17 @@ use tokio_util::sync::CancellationToken;
 
 use super::{harness, scene_files};
 
-/// What every beam set's power is multiplied by.
-static FACTOR: Slot = Slot::buffer("factor", "a factor, 1", |_| 16);
+/// What every beam set's power is multiplied by: the last texel of a 3D texture that one pass stores to and another reads.
+static FACTOR: Slot = Slot::texture(
+    "factor",
+    "a factor, 1",
+    Texture {
+        format: wgpu::TextureFormat::R32Float,
+        dimension: wgpu::TextureViewDimension::D3,
+        extent: |_| [2, 2, 3],
+        usage: wgpu::TextureUsages::STORAGE_BINDING,
+    },
+);
 
 /// Fills [`FACTOR`], once.
 static FACTOR_PASS: Pass = Pass {
@@ -84,8 +93,10 @@ static POWER_PASS: Pass = Pass {
 };
 
 const FACTOR_SHADER: &str = "
-@group(0) @binding(0) var<storage, read_write> factor: array<f32>;
-@compute @workgroup_size(1) fn factor_main() { factor[0] = 0.5; }
+@group(0) @binding(0) var factor: texture_storage_3d<r32float, write>;
+@compute @workgroup_size(2, 2, 3) fn factor_main(@builtin(local_invocation_id) id: vec3u) {
+    textureStore(factor, id, vec4f(select(0.0, 0.5, all(id == vec3u(1u, 1u, 2u)))));
+}
 ";
 
 const POWER_SHADER: &str = "
@@ -93,14 +104,14 @@ const POWER_SHADER: &str = "
 struct Power { power: vec4f, points: u32, pad_0: u32, pad_1: u32, pad_2: u32 }
 @group(0) @binding(0) var<uniform> power: Power;
 @group(0) @binding(1) var<storage, read> points: array<Point>;
-@group(0) @binding(2) var<storage, read> factor: array<f32>;
+@group(0) @binding(2) var factor: texture_3d<f32>;
 @group(0) @binding(3) var<storage, read> beams: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> point_irradiance: array<vec4f>;
 @compute @workgroup_size(64) fn power_main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= power.points || points[id.x].receiver < 0.0 { return; }
     // The first vertex of the set's rays: they were traced, whoever reads them.
     if beams[0].w == 0.0 { return; }
-    point_irradiance[id.x] += vec4f(power.power.xyz * factor[0], 0.0);
+    point_irradiance[id.x] += vec4f(power.power.xyz * textureLoad(factor, vec3u(1u, 1u, 2u), 0).x, 0.0);
 }
 ";
 
