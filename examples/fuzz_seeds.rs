@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 const MOST_BYTES: usize = 16 << 10;
 
 /// OBJ files with more than plain triangles.
-const OBJS: [(&str, &str); 6] = [
+const OBJS: [(&str, &str); 10] = [
     ("relative", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n"),
     (
         "normals",
@@ -34,7 +34,23 @@ const OBJS: [(&str, &str); 6] = [
     ),
     (
         "materials",
-        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl none\nf 3 2 1\nusemtl red\n\0newmtl red\nKd 0.8 0.1 2\nnewmtl blue\nmap_Kd a.png\nKd 1\n",
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl none\nf 3 2 1\nusemtl red\n\0\0newmtl red\nKd 0.8 0.1 2\nnewmtl blue\nmap_Kd a.png\nKd 1\n",
+    ),
+    (
+        "two_libraries",
+        "mtllib a.mtl b.mtl\rv 0 0 0\rv 1 0 0\rv 0 1 0\rusemtl\rusemtl röd\rf 1 2 3\r\0\0newmtl röd\nd 0.5\nillum 4\nKs 1 1 1\n\0\0newmtl röd\nKd 1 0 0\n",
+    ),
+    (
+        "wall_with_a_door",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 1 2 0\nv 2 2 0\nv 2 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8 9\nf 9 8 7 6 5 4 3 2 1\nf 1 5 2 6 3\n",
+    ),
+    (
+        "not_a_number",
+        "v 0 0 0 1 0 0 1\nv 1 0 0\nv 0 1 0\nv nan 0 0\nv 1 2\nvn -nan(ind) 0 1\nvn 1.#QNAN 0\nf 1//0 2//1 3//9\nvp 0 1\nend\n",
+    ),
+    (
+        "utf_16",
+        "v\0 \x000\0 \x000\0 \x000\0\n\0f\0 \x001\0 \x001\0 \x001\0",
     ),
 ];
 

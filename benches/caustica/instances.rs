@@ -78,7 +78,7 @@ fn resolved(mut scene: Value) -> Result<ResolvedScene, Box<dyn Error>> {
     let mut meshes = Vec::new();
     for object in scene["objects"].as_array_mut().into_iter().flatten() {
         let file = object["mesh"].as_str().ok_or("a file name")?;
-        let mesh = store.insert_obj(&std::fs::read(format!("scenes/meshes/{file}"))?, None)?;
+        let mesh = store.insert_obj(&std::fs::read(format!("scenes/meshes/{file}"))?, &[])?;
         object["mesh"] = json!(mesh.mesh.id);
         meshes.push(mesh.mesh);
     }

@@ -1,4 +1,4 @@
-//! Any bytes as an OBJ; the bytes after a zero byte are the MTL.
+//! Any bytes as an OBJ, and after each separator as an MTL.
 
 use caustica::config::Limits;
 use caustica::mesh::hierarchy::LEAF;
@@ -11,17 +11,28 @@ const NORMAL_TOLERANCE: f32 = 1e-5;
 
 /// Reads `bytes`. An accepted mesh must be valid; a refusal must state its reason.
 pub(crate) fn check(bytes: &[u8]) {
-    let mut parts = bytes.splitn(2, |byte| *byte == 0);
-    let text = parts.next().unwrap_or_default();
-    let mtl = parts.next();
+    let (text, mtls) = parts(bytes);
     let limits = Limits {
         max_triangles: MOST_TRIANGLES,
         ..Limits::default()
     };
-    match obj::read(text, mtl, &limits) {
+    match obj::read(text, &mtls, &limits) {
         Ok(mesh) => sound(&mesh),
         Err(error) => assert!(!error.to_string().is_empty()),
     }
+}
+
+/// The files in `bytes`, which begin after two zero bytes each. (One zero byte alone is half a character of UTF-16.)
+fn parts(bytes: &[u8]) -> (&[u8], Vec<&[u8]>) {
+    let mut files = Vec::new();
+    let mut rest = bytes;
+    while let Some(end) = rest.windows(2).position(|pair| pair == [0, 0]) {
+        files.push(&rest[..end]);
+        rest = &rest[end + 2..];
+    }
+    files.push(rest);
+    let obj = files.remove(0);
+    (obj, files)
 }
 
 /// The properties that the renderer relies on.

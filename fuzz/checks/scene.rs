@@ -67,7 +67,7 @@ fn says_why(error: &SceneError) {
 
 fn mesh() -> Arc<Mesh> {
     static SHARED: OnceLock<Arc<Mesh>> = OnceLock::new();
-    let read = || match obj::read(MESH, None, &Limits::default()) {
+    let read = || match obj::read(MESH, &[], &Limits::default()) {
         Ok(mesh) => Arc::new(mesh),
         Err(error) => panic!("{error}"),
     };

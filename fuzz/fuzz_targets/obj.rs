@@ -1,4 +1,4 @@
-//! Any bytes as an OBJ; the bytes after a zero byte are the MTL.
+//! Any bytes as an OBJ, and after every two zero bytes as an MTL.
 #![no_main]
 
 #[path = "../checks/obj.rs"]

@@ -44,20 +44,20 @@ impl MeshStore {
         }
     }
 
-    /// Reads a mesh and stores it. If the same bytes are stored already, returns that mesh without reading them again.
+    /// Reads a mesh with its MTL files, and stores it. If the same bytes are stored already, returns that mesh without reading them again.
     ///
     /// The largest meshes take seconds; other calls are not blocked meanwhile.
     ///
     /// # Errors
     /// What [`obj::read`] refuses, and [`MeshError::StoreFull`].
-    pub fn insert_obj(&self, obj: &[u8], mtl: Option<&[u8]>) -> Result<Inserted, MeshError> {
-        if let Some(mesh) = self.get(&obj::id(obj, mtl)) {
+    pub fn insert_obj(&self, obj: &[u8], mtls: &[&[u8]]) -> Result<Inserted, MeshError> {
+        if let Some(mesh) = self.get(&obj::id(obj, mtls)) {
             return Ok(Inserted {
                 mesh,
                 created: false,
             });
         }
-        let mesh = Arc::new(obj::read(obj, mtl, &self.limits)?);
+        let mesh = Arc::new(obj::read(obj, mtls, &self.limits)?);
         let needed_bytes = mesh.bytes();
         let mut held = self.write();
         // Another thread may have added the same mesh meanwhile.

@@ -2,7 +2,7 @@
 //! `hard_cases`, `plan`, `serve`, `selfcheck`, `health`), and `error` has the exit codes.
 //!
 //! Shared by the commands: `scene_flags` makes a flag of every field of `quality` and `output`, `scene_file` reads a scene with
-//! its meshes, `frames` reads frame ranges and file name patterns, `picture` renders and encodes, `files` writes files
+//! its meshes, `material_files` the MTL files of a mesh, `frames` reads frame ranges and file name patterns, `picture` renders and encodes, `files` writes files
 //! atomically, `progress` shows progress, `summary` prints the cost of a frame.
 
 pub mod accuracy;
@@ -15,6 +15,7 @@ pub mod files;
 pub mod frames;
 pub mod hard_cases;
 pub mod health;
+pub mod material_files;
 pub mod picture;
 pub mod plan;
 mod progress;

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read};
-use std::path::{Component, Path};
+use std::path::Path;
 
 use super::error::CliError;
+use super::material_files;
 use super::scene_flags::SceneArgs;
 use crate::assets::MeshStore;
 use crate::config::Limits;
@@ -109,9 +110,9 @@ fn with_meshes(
         if object.mesh.is_empty() || object.mesh.starts_with(ID_PREFIX) {
             continue;
         }
-        let read = known
-            .entry(object.mesh.clone())
-            .or_insert_with(|| read_mesh(&store, &directory.join(&object.mesh), &mut notes));
+        let read = known.entry(object.mesh.clone()).or_insert_with(|| {
+            read_mesh(&store, directory, &directory.join(&object.mesh), &mut notes)
+        });
         match read {
             Ok(id) => object.mesh.clone_from(id),
             Err(reason) => issues.push(Issue::invalid(
@@ -131,52 +132,20 @@ fn with_meshes(
     Err(SceneError { issues })
 }
 
-/// Reads an OBJ file, and the MTL file it names if that is in the same directory. Returns the mesh's id.
-fn read_mesh(store: &MeshStore, path: &Path, notes: &mut Vec<String>) -> Result<String, String> {
+/// Reads an OBJ file, and the MTL files it names. Returns the mesh's id.
+fn read_mesh(
+    store: &MeshStore,
+    scene_folder: &Path,
+    path: &Path,
+    notes: &mut Vec<String>,
+) -> Result<String, String> {
     let obj = fs::read(path).map_err(|error| error.to_string())?;
-    let mtl = read_material_library(&obj, path, notes);
+    let mtls = material_files::read(&obj, path, scene_folder, notes);
+    let mtls: Vec<&[u8]> = mtls.iter().map(Vec::as_slice).collect();
     let inserted = store
-        .insert_obj(&obj, mtl.as_deref())
+        .insert_obj(&obj, &mtls)
         .map_err(|error| error.to_string())?;
     let of_mesh = inserted.mesh.warnings.iter();
     notes.extend(of_mesh.map(|warning| format!("{}: {}", path.display(), warning.message)));
     Ok(inserted.mesh.id.clone())
-}
-
-fn read_material_library(obj: &[u8], path: &Path, notes: &mut Vec<String>) -> Option<Vec<u8>> {
-    let name = material_library(obj)?;
-    if !is_plain_name(&name) {
-        notes.push(format!(
-            "{}: the material library `{name}` is not read; accepted: the plain name of a file beside the OBJ",
-            path.display()
-        ));
-        return None;
-    }
-    match fs::read(path.with_file_name(&name)) {
-        Ok(bytes) => Some(bytes),
-        Err(error) => {
-            notes.push(format!(
-                "{}: the material library `{name}` cannot be read: {error}",
-                path.display()
-            ));
-            None
-        }
-    }
-}
-
-/// The name after the first `mtllib`.
-pub fn material_library(obj: &[u8]) -> Option<String> {
-    obj.split(|byte| *byte == b'\n').find_map(|line| {
-        let line = std::str::from_utf8(line).ok()?.trim();
-        let name = line.strip_prefix("mtllib")?;
-        let is_word = name.starts_with(char::is_whitespace);
-        is_word.then(|| name.trim().to_owned())
-    })
-}
-
-/// Whether a name stays in its directory, on every operating system.
-pub fn is_plain_name(name: &str) -> bool {
-    let mut components = Path::new(name).components();
-    let is_one = matches!(components.next(), Some(Component::Normal(_)));
-    is_one && components.next().is_none() && !name.contains(['/', '\\', ':', '\0'])
 }

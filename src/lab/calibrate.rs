@@ -202,7 +202,7 @@ fn scene_value(text: &str) -> Value {
 fn resolved<E: std::error::Error>(mut value: Value) -> Result<ResolvedScene, MeasureError<E>> {
     let limits = Limits::default();
     let store = MeshStore::new(&limits);
-    let id = store.insert_obj(BOX, None)?.mesh.id.clone();
+    let id = store.insert_obj(BOX, &[])?.mesh.id.clone();
     let objects = value.get_mut("objects").and_then(Value::as_array_mut);
     for object in objects.into_iter().flatten() {
         object["mesh"] = json!(id);

@@ -8,24 +8,9 @@ pub enum MeshError {
         "the OBJ is empty; expected Wavefront OBJ text with `v x y z` and `f a b c` lines, in metres"
     )]
     Empty,
-    /// Bytes that are not UTF-8 text.
-    #[error(
-        "the {file} is not UTF-8 text: byte {offset} (line {line}) starts an invalid sequence; expected Wavefront \
-         {file} text in UTF-8 or ASCII"
-    )]
-    NotUtf8 {
-        /// `OBJ` or `MTL`.
-        file: &'static str,
-        /// Bytes before the first invalid one.
-        offset: usize,
-        /// Its line.
-        line: usize,
-    },
     /// A line that cannot be parsed.
-    #[error("{file} line {line}: {message}")]
+    #[error("OBJ line {line}: {message}")]
     Syntax {
-        /// `OBJ` or `MTL`.
-        file: &'static str,
         /// The line.
         line: usize,
         /// What is wrong with it and what is accepted.
@@ -40,9 +25,9 @@ pub enum MeshError {
         /// `v` lines read.
         vertices: usize,
     },
-    /// A face names a vertex or normal that the file does not have.
+    /// A face names a vertex that the file does not have.
     #[error(
-        "OBJ line {line}, face {face}: {what} index {index} is out of range; accepted are 1 … {available} and, \
+        "OBJ line {line}, face {face}: position index {index} is out of range; accepted are 1 … {available} and, \
          counted back from the line, -1 … -{available_before}"
     )]
     FaceIndex {
@@ -50,8 +35,6 @@ pub enum MeshError {
         line: usize,
         /// The face.
         face: usize,
-        /// `position` or `normal`.
-        what: &'static str,
         /// The index as written.
         index: i64,
         /// The number in the file.

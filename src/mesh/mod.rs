@@ -1,11 +1,13 @@
-//! Meshes: reading OBJ and MTL (`obj`, with `scan`, `mtl` and `text`, which check the texts first), repairs (`repair`), errors
-//! (`error`), a ray hierarchy over the triangles (`hierarchy`), and a description of each mesh (`info`).
+//! Meshes: reading OBJ and MTL (`obj`, with `scan`, `mtl` and `text`, which check the texts first, and `polygon`, which cuts polygons
+//! into triangles), repairs (`repair`), errors (`error`), a ray hierarchy over the triangles (`hierarchy`), and a description of each
+//! mesh (`info`).
 
 mod error;
 pub mod hierarchy;
 mod info;
 pub(crate) mod mtl;
 pub mod obj;
+mod polygon;
 pub(crate) mod repair;
 mod scan;
 mod text;

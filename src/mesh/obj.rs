@@ -2,10 +2,11 @@
 //!
 //! Only the given bytes are read: the path in a `mtllib` line is never opened.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec3, Vec3};
 
+use super::mtl::FileMaterial;
 use super::repair::{self, RawTriangle};
 use super::scan::Scan;
 use super::{Material, Mesh, MeshError, Triangle, hierarchy, mtl, scan};
@@ -15,60 +16,65 @@ use crate::stats::Warning;
 /// Largest number of triangles: their indices share a word with [`hierarchy::LEAF`], and there are two nodes for each triangle.
 const MAX_TRIANGLES: usize = 1 << 30;
 
-/// The id of a mesh: `blake3:` and the hash of the OBJ's bytes, as `b3sum` prints it. With an MTL, the hash has a derivation key
-/// of its own and covers both texts, each after its length, so that no two uploads share an id.
-pub fn id(obj: &[u8], mtl: Option<&[u8]>) -> String {
-    let hash = match mtl {
-        None => blake3::hash(obj),
-        Some(mtl) => {
-            let mut hasher = blake3::Hasher::new_derive_key("caustica mesh 2025: OBJ and MTL");
-            for bytes in [obj, mtl] {
-                hasher.update(&(bytes.len() as u64).to_le_bytes());
-                hasher.update(bytes);
-            }
-            hasher.finalize()
+/// The id of a mesh: `blake3:` and the hash of the OBJ's bytes, as `b3sum` prints it. With MTL files, the hash has a derivation key
+/// of its own and covers all texts, each after its length, so that no two uploads share an id.
+pub fn id(obj: &[u8], mtls: &[&[u8]]) -> String {
+    let hash = if mtls.is_empty() {
+        blake3::hash(obj)
+    } else {
+        let mut hasher = blake3::Hasher::new_derive_key("caustica mesh 2025: OBJ and MTL");
+        for bytes in [obj].iter().chain(mtls) {
+            hasher.update(&(bytes.len() as u64).to_le_bytes());
+            hasher.update(bytes);
         }
+        hasher.finalize()
     };
     format!("blake3:{}", hash.to_hex())
 }
 
-/// Reads a mesh, in metres. Polygons become fans of triangles. Degenerate and duplicate triangles are left out; holes and edges
-/// with more than two faces are kept. `warnings` states both.
+/// What stands after each `mtllib` of an OBJ: the name of a material library, or several names. Text of any encoding.
+pub fn material_libraries(obj: &[u8]) -> Vec<String> {
+    scan::libraries(obj)
+}
+
+/// Reads a mesh, in metres, with the materials of any number of MTL files. Polygons become triangles. Degenerate and duplicate
+/// triangles are left out; holes and edges with more than two faces are kept. `warnings` states both, and everything in the files that
+/// is not used.
 ///
 /// Faces without material, or whose material has no `Kd`, get a reflectance of 0.8.
 ///
 /// # Errors
-/// See [`MeshError`]. A mesh with more than `limits.max_triangles` triangles is refused before the rest of the file is
-/// read.
-pub fn read(obj: &[u8], mtl: Option<&[u8]>, limits: &Limits) -> Result<Mesh, MeshError> {
-    if obj.is_empty() {
-        return Err(MeshError::Empty);
-    }
-    let mut scan = scan::scan(utf8("OBJ", obj)?, limits.max_triangles.min(MAX_TRIANGLES))?;
-    let mtl_scan = match mtl {
-        Some(bytes) => Some(mtl::scan(utf8("MTL", bytes)?)?),
-        None => None,
-    };
+/// See [`MeshError`]; only what the geometry cannot do without is an error. A mesh with more than `limits.max_triangles` triangles is
+/// refused before the rest of the file is read.
+pub fn read(obj: &[u8], mtls: &[&[u8]], limits: &Limits) -> Result<Mesh, MeshError> {
+    let mut scan = scan::scan(obj, limits.max_triangles.min(MAX_TRIANGLES))?;
+    let mtl_scan = mtl::scan(mtls);
+    let text = scan.rewritten(|name| mtl_scan.place_of(name));
     let mut warnings = std::mem::take(&mut scan.warnings);
-    material_warnings(&scan, mtl_scan.as_ref(), &mut warnings);
+    material_warnings(
+        &scan,
+        (!mtls.is_empty()).then_some(&mtl_scan),
+        &mut warnings,
+    );
+    drop(scan);
 
-    let mtl_text = mtl_scan.as_ref().map(|scan| scan.text.as_str());
-    let (mut models, file_materials) = load(&scan.text, mtl_text)?;
+    let mut models = load(&text, mtl_scan.materials.len())?;
+    drop(text);
     // The library adds a last model without faces if the last line is a `usemtl`.
     models.retain(|model| !model.mesh.indices.is_empty());
-    let (materials, material_of) = used_materials(&models, &file_materials, &mut warnings);
+    let (materials, material_of) = used_materials(&models, &mtl_scan.materials, &mut warnings);
     let raw: Vec<RawTriangle> = models
         .iter()
         .flat_map(|model| triangles(&model.mesh, material_of[&model.mesh.material_id]))
         .collect();
-    drop((scan, models));
+    drop(models);
 
     let repaired = repair::repair(&raw)?;
     warnings.extend(repaired.warnings);
     warnings.sort_by(|a, b| (&a.code, &a.message).cmp(&(&b.code, &b.message)));
     let (min_m, max_m) = bounds(&repaired.triangles);
     Ok(Mesh {
-        id: id(obj, mtl),
+        id: id(obj, mtls),
         origin_m: repaired.origin_m,
         min_m,
         max_m,
@@ -79,40 +85,29 @@ pub fn read(obj: &[u8], mtl: Option<&[u8]>, limits: &Limits) -> Result<Mesh, Mes
     })
 }
 
-fn utf8<'a>(file: &'static str, bytes: &'a [u8]) -> Result<&'a str, MeshError> {
-    std::str::from_utf8(bytes).map_err(|error| {
-        let offset = error.valid_up_to();
-        let line = 1 + bytes[..offset].iter().filter(|b| **b == b'\n').count();
-        MeshError::NotUtf8 { file, offset, line }
-    })
-}
-
-/// Passes the checked texts to the OBJ library.
-fn load(
-    obj: &str,
-    mtl: Option<&str>,
-) -> Result<(Vec<tobj::Model>, Vec<tobj::Material>), MeshError> {
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        ..Default::default()
-    };
+/// Passes the checked text to the OBJ library, with `material_count` materials named by their numbers.
+fn load(obj: &str, material_count: usize) -> Result<Vec<tobj::Model>, MeshError> {
     let unreadable = |error: tobj::LoadError| MeshError::Unreadable {
         reason: error.to_string(),
     };
-    // Name a library in the first line, so that the materials are known regardless of where and how the file names it.
+    let mtl: String = (0..material_count)
+        .map(|number| format!("newmtl {}\n", scan::name_of_material(number)))
+        .collect();
+    // The library reads materials where the text names a file.
     let mut text = std::io::Read::chain("mtllib given\n".as_bytes(), obj.as_bytes());
-    let (models, materials) = tobj::load_obj_buf(&mut text, &options, |_| {
-        tobj::load_mtl_buf(&mut mtl.unwrap_or_default().as_bytes())
+    let (models, materials) = tobj::load_obj_buf(&mut text, &tobj::LoadOptions::default(), |_| {
+        tobj::load_mtl_buf(&mut mtl.as_bytes())
     })
     .map_err(unreadable)?;
-    Ok((models, materials.map_err(unreadable)?))
+    materials.map_err(unreadable)?;
+    Ok(models)
 }
 
-/// The materials that faces use, in the order of the MTL, followed by the default one if it is needed; and the index of each in
+/// The materials that faces use, in the order of the files, followed by the default one if it is needed; and the index of each in
 /// that list.
 fn used_materials(
     models: &[tobj::Model],
-    file_materials: &[tobj::Material],
+    file_materials: &[FileMaterial],
     warnings: &mut Vec<Warning>,
 ) -> (Vec<Material>, BTreeMap<Option<usize>, u32>) {
     let mut place_of: BTreeMap<Option<usize>, u32> = models
@@ -121,12 +116,15 @@ fn used_materials(
         .collect();
     let default = place_of.remove(&None);
     let mut materials = Vec::with_capacity(place_of.len() + 1);
+    let mut used = Vec::with_capacity(place_of.len());
     for (index, place) in &mut place_of {
         if let Some(file) = index.and_then(|i| file_materials.get(i)) {
             *place = materials.len() as u32;
             materials.push(mtl::material(&file.name, file.diffuse, warnings));
+            used.push(file);
         }
     }
+    warnings.extend(mtl::look_warnings(used.into_iter()));
     if default.is_some() {
         place_of.insert(None, materials.len() as u32);
         materials.push(mtl::default_material());
@@ -134,10 +132,11 @@ fn used_materials(
     (materials, place_of)
 }
 
-/// Warnings about material names that are in only one of the two files.
+/// Warnings about material names that are in only one kind of file. `mtl` is `None` if there is no MTL.
 fn material_warnings(scan: &Scan, mtl: Option<&mtl::MtlScan>, warnings: &mut Vec<Warning>) {
+    let used: BTreeSet<&String> = scan.used_materials.iter().collect();
     let Some(mtl) = mtl else {
-        if let (Some(library), false) = (&scan.library, scan.used_materials.is_empty()) {
+        if let (Some(library), false) = (scan.libraries.first(), used.is_empty()) {
             warnings.push(Warning::new(
                 "mesh_missing_material",
                 format!(
@@ -146,24 +145,26 @@ fn material_warnings(scan: &Scan, mtl: Option<&mtl::MtlScan>, warnings: &mut Vec
                     mtl::DEFAULT_ALBEDO
                 ),
             ));
-        } else if !scan.used_materials.is_empty() {
-            warnings.push(missing(scan.used_materials.iter(), "but no MTL was sent"));
+        } else if !used.is_empty() {
+            warnings.push(missing(used.into_iter(), "but no MTL was sent"));
         }
         return;
     };
     warnings.extend(mtl.warnings.iter().cloned());
-    if scan.used_materials.is_disjoint(&mtl.names) {
+    let (known, absent): (Vec<&String>, Vec<&String>) = used
+        .into_iter()
+        .partition(|name| mtl.place_of(name).is_some());
+    if known.is_empty() {
         warnings.push(Warning::new(
             "mesh_mtl_ignored",
             format!(
                 "The MTL has no effect: none of its {} materials is named by a `usemtl` line of the OBJ.",
-                mtl.names.len()
+                mtl.materials.len()
             ),
         ));
     }
-    let mut absent = scan.used_materials.difference(&mtl.names).peekable();
-    if absent.peek().is_some() {
-        warnings.push(missing(absent, "which the MTL does not have"));
+    if !absent.is_empty() {
+        warnings.push(missing(absent.into_iter(), "which the MTL does not have"));
     }
 }
 

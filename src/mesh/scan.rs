@@ -1,63 +1,171 @@
-//! Checks an OBJ before the OBJ library reads it: refuses, with line numbers, what cannot be used, and rewrites the rest without
-//! ambiguities: absolute indices, a normal for every corner, no names but those of materials.
+//! Checks an OBJ before the OBJ library reads it: refuses, with line numbers, what the geometry cannot do without, leaves out the rest
+//! with a warning, and rewrites the text without ambiguities: absolute indices, triangles, a normal for every corner, no names.
 //!
-//! Without this, the library would read the line `l 1 2 3` as a triangle, give a corner without a normal that of the previous
-//! corner, refuse vertex colours that only some vertices have, and report errors without a line.
+//! Without this, the library would refuse a file for one byte of a comment, read the line `l 1 2 3` as a triangle, give a corner
+//! without a normal that of the previous corner, cut concave polygons into fans, refuse vertex colours that only some vertices have,
+//! and report errors without a line.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use glam::DVec3;
 
 use super::MeshError;
-use super::text::{OBJ, corner_syntax, name, number, shorten, syntax, words};
+use super::polygon::{Cut, Cutter};
+use super::text::{Lines, Skipped, corner_syntax, keyword_of, number, shorten, syntax, words};
 use crate::stats::Warning;
 
 /// Largest coordinate magnitude, m. Beyond it, f32 steps are wider than 50 m even relative to the mesh's own middle.
 pub const MAX_COORDINATE_M: f64 = 1e9;
 
+/// A normal that the file does not have, or that cannot be used: the face's is used instead.
+const NO_NORMAL: u32 = 0;
+
+/// Highest index; higher ones name nothing in any file.
+const MAX_INDEX: usize = u32::MAX as usize;
+
 /// The result of the check.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Scan {
-    /// The rewritten OBJ: `v`, `vn` (the first is zero and means "none"), `usemtl`, and `f` lines with `position//normal`.
-    pub(super) text: String,
-    /// Names after `usemtl`.
-    pub(super) used_materials: BTreeSet<String>,
-    /// Name after the first `mtllib`.
-    pub(super) library: Option<String>,
+    /// Names after `usemtl`, in the order of their first use.
+    pub(super) used_materials: Vec<String>,
+    /// What stands after each `mtllib`.
+    pub(super) libraries: Vec<String>,
     /// What was left out or is doubtful.
     pub(super) warnings: Vec<Warning>,
+    positions: Vec<DVec3>,
+    /// Text of the `vn` lines; the first is zero and means [`NO_NORMAL`].
+    normal_text: String,
+    faces: Vec<Face>,
+    corners: Vec<Corner>,
 }
 
-/// Checks an OBJ text. More than `max_triangles` triangles are refused at the line that exceeds the limit.
-pub(super) fn scan(text: &str, max_triangles: usize) -> Result<Scan, MeshError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    if text.trim().is_empty() {
+/// A polygon.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    line: usize,
+    /// Index of its first corner.
+    start: usize,
+    /// Number of corners, 3 or more.
+    count: usize,
+    /// Index into `used_materials`; `None` before the first `usemtl` or after one without a name.
+    material: Option<usize>,
+}
+
+/// A corner of a face: index of its position, counted from 1, and of its normal, or [`NO_NORMAL`].
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    position: u32,
+    normal: u32,
+}
+
+impl Scan {
+    /// The OBJ as the library reads it: `v`, `vn`, `usemtl`, and triangles `f position//normal …`. `material_of` gives the number that
+    /// replaces a material's name. Polygons that cross themselves are counted in `warnings`.
+    pub(super) fn rewritten(&mut self, material_of: impl Fn(&str) -> Option<usize>) -> String {
+        let mut text = String::with_capacity(
+            self.positions.len() * 32 + self.normal_text.len() + self.corners.len() * 12,
+        );
+        // Writing to a string cannot fail.
+        for p in &self.positions {
+            let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
+        }
+        text.push_str(&self.normal_text);
+        let numbers: Vec<Option<usize>> = self
+            .used_materials
+            .iter()
+            .map(|name| material_of(name))
+            .collect();
+        let mut cutter = Cutter::new();
+        let (mut points, mut triangles) = (Vec::new(), Vec::new());
+        let mut crossed = Skipped::default();
+        let mut current = None;
+        for face in &self.faces {
+            let material = face.material.and_then(|used| numbers[used]);
+            if material != current {
+                current = material;
+                match material {
+                    Some(number) => _ = writeln!(text, "usemtl {}", name_of_material(number)),
+                    None => text.push_str("usemtl none\n"),
+                }
+            }
+            let corners = &self.corners[face.start..face.start + face.count];
+            points.clear();
+            points.extend(
+                corners
+                    .iter()
+                    .map(|corner| self.positions[corner.position as usize - 1]),
+            );
+            if cutter.cut(&points, &mut triangles) == Cut::Crossed {
+                crossed.add(|| format!("on line {}", face.line));
+            }
+            for triangle in &triangles {
+                text.push('f');
+                for corner in triangle.map(|index| corners[index]) {
+                    // The library counts from 1, and its first normal is the zero of `NO_NORMAL`.
+                    let _ = write!(text, " {}//{}", corner.position, corner.normal + 1);
+                }
+                text.push('\n');
+            }
+        }
+        self.warnings.extend(crossed.warning(
+            "mesh_crossed_polygons",
+            "polygons cross themselves or are far from flat; their triangles cover another area. Triangulate the mesh before sending it.",
+        ));
+        text
+    }
+}
+
+/// The name of a material in rewritten texts.
+pub(super) fn name_of_material(number: usize) -> String {
+    format!("material{number}")
+}
+
+/// Checks an OBJ. More than `max_triangles` triangles are refused at the line that exceeds the limit.
+pub(super) fn scan(bytes: &[u8], max_triangles: usize) -> Result<Scan, MeshError> {
+    let lines = Lines::of(bytes);
+    if lines.are_blank() {
         return Err(MeshError::Empty);
     }
     let mut scanner = Scanner::new(max_triangles);
     // A backslash at the end of a line joins it with the next one.
     let mut joined = String::new();
     let mut joined_from = 0;
-    for (index, raw) in text.lines().enumerate() {
-        let is_comment = joined.is_empty() && raw.trim_start().starts_with('#');
-        match raw.trim_end().strip_suffix('\\') {
-            Some(head) if !is_comment => {
+    for (line, text) in lines.numbered() {
+        match text.trim_ascii_end().strip_suffix('\\') {
+            Some(head) if !joined.is_empty() || may_go_on(head) => {
                 if joined.is_empty() {
-                    joined_from = index + 1;
+                    joined_from = line;
                 }
                 joined.push_str(head);
                 joined.push(' ');
             }
-            _ if joined.is_empty() => scanner.line(index + 1, raw)?,
+            _ if joined.is_empty() => scanner.line(line, &text)?,
             _ => {
-                joined.push_str(raw);
+                joined.push_str(&text);
                 scanner.line(joined_from, &std::mem::take(&mut joined))?;
             }
         }
     }
     scanner.line(joined_from, &joined)?;
     scanner.finish()
+}
+
+/// The text after each `mtllib` of an OBJ: names of material libraries, usually one.
+pub(super) fn libraries(bytes: &[u8]) -> Vec<String> {
+    let lines = Lines::of(bytes);
+    let named = lines.numbered().filter_map(|(_, line)| {
+        let (keyword, rest) = keyword_of(&line);
+        (keyword == "mtllib" && !rest.is_empty()).then(|| rest.to_owned())
+    });
+    named.collect()
+}
+
+/// Whether a line may be joined with the next one: not comments and names, in which a backslash may be half of a character of another
+/// encoding.
+fn may_go_on(line: &str) -> bool {
+    let (keyword, _) = keyword_of(line);
+    !keyword.starts_with('#') && !matches!(keyword, "o" | "g" | "usemtl")
 }
 
 /// An index that has to be defined by the end of the file.
@@ -73,21 +181,24 @@ struct Reference {
 struct Scanner {
     max_triangles: usize,
     positions: Vec<DVec3>,
+    /// Positions that cannot be used, by index counted from 1. They are refused if a face uses them.
+    bad_positions: BTreeMap<usize, MeshError>,
     normals: usize,
     normal_text: String,
-    face_text: String,
-    corners: Vec<(usize, usize)>,
-    faces: usize,
+    faces: Vec<Face>,
+    corners: Vec<Corner>,
+    face_count: usize,
     triangles: usize,
     highest_position: Reference,
-    highest_normal: Reference,
-    used_materials: BTreeSet<String>,
-    library: Option<String>,
-    bad_normals: usize,
-    small_faces: usize,
-    concave_faces: usize,
-    ignored: usize,
-    first_ignored: Option<(usize, String)>,
+    materials: BTreeMap<String, usize>,
+    material: Option<usize>,
+    libraries: Vec<String>,
+    bad_normals: Skipped,
+    corners_without_normal: Skipped,
+    small_faces: Skipped,
+    extra_values: Skipped,
+    vertex_colours: Skipped,
+    ignored: Skipped,
 }
 
 impl Scanner {
@@ -95,83 +206,100 @@ impl Scanner {
         Self {
             max_triangles,
             positions: Vec::new(),
+            bad_positions: BTreeMap::new(),
             normals: 0,
             normal_text: "vn 0 0 0\n".to_owned(),
-            face_text: String::new(),
+            faces: Vec::new(),
             corners: Vec::new(),
-            faces: 0,
+            face_count: 0,
             triangles: 0,
             highest_position: Reference::default(),
-            highest_normal: Reference::default(),
-            used_materials: BTreeSet::new(),
-            library: None,
-            bad_normals: 0,
-            small_faces: 0,
-            concave_faces: 0,
-            ignored: 0,
-            first_ignored: None,
+            materials: BTreeMap::new(),
+            material: None,
+            libraries: Vec::new(),
+            bad_normals: Skipped::default(),
+            corners_without_normal: Skipped::default(),
+            small_faces: Skipped::default(),
+            extra_values: Skipped::default(),
+            vertex_colours: Skipped::default(),
+            ignored: Skipped::default(),
         }
     }
 
     fn line(&mut self, line: usize, text: &str) -> Result<(), MeshError> {
-        let text = text.trim();
-        let (keyword, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+        let (keyword, rest) = keyword_of(text);
         match keyword {
-            "v" => self.position(line, rest),
+            "v" => self.vertex(line, rest),
             "vn" => self.normal(line, rest),
-            "f" => self.face(line, rest),
-            "usemtl" => {
-                let name = name(OBJ, line, keyword, rest)?;
-                if !self.used_materials.contains(name) {
-                    self.used_materials.insert(name.to_owned());
-                }
-                let _ = writeln!(self.face_text, "usemtl {name}");
-                Ok(())
-            }
-            "mtllib" => {
-                let name = name(OBJ, line, keyword, rest)?;
-                self.library.get_or_insert_with(|| name.to_owned());
-                Ok(())
-            }
-            "" | "o" | "g" | "s" | "vt" => Ok(()),
-            _ if keyword.starts_with('#') => Ok(()),
-            _ => {
-                self.ignored += 1;
-                self.first_ignored
-                    .get_or_insert_with(|| (line, keyword.chars().take(20).collect()));
-                Ok(())
-            }
+            "f" => self.face(line, rest)?,
+            "usemtl" => self.use_material(rest),
+            "mtllib" if !rest.is_empty() => self.libraries.push(rest.to_owned()),
+            "" | "o" | "g" | "s" | "vt" | "mtllib" => {}
+            _ if keyword.starts_with('#') => {}
+            _ => self.ignored.add(|| {
+                let keyword: String = keyword.chars().take(20).collect();
+                format!("line {line} (`{keyword}`)")
+            }),
         }
+        Ok(())
     }
 
-    fn position(&mut self, line: usize, rest: &str) -> Result<(), MeshError> {
-        let words: Vec<&str> = words(rest).collect();
-        // Three coordinates, alone, with a weight that divides them, or with three colour values, which are not used.
-        if !matches!(words.len(), 3 | 4 | 6) {
-            return Err(syntax(
-                line,
-                format!(
-                    "a vertex has {} values; expected `v x y z`, `v x y z w` or `v x y z r g b`",
-                    words.len()
-                ),
-            ));
+    fn use_material(&mut self, name: &str) {
+        self.material = match self.materials.get(name) {
+            _ if name.is_empty() => None,
+            Some(known) => Some(*known),
+            None => {
+                let next = self.materials.len();
+                self.materials.insert(name.to_owned(), next);
+                Some(next)
+            }
+        };
+    }
+
+    fn vertex(&mut self, line: usize, rest: &str) {
+        let position = self.position(line, rest).unwrap_or_else(|error| {
+            self.bad_positions.insert(self.positions.len() + 1, error);
+            DVec3::ZERO
+        });
+        self.positions.push(position);
+    }
+
+    /// Three coordinates, alone, with a weight that divides them, or with further values, which are not used.
+    fn position(&mut self, line: usize, rest: &str) -> Result<DVec3, MeshError> {
+        let mut count = 0;
+        let mut first = [""; 4];
+        for word in words(rest) {
+            if let Some(place) = first.get_mut(count) {
+                *place = word;
+            }
+            count += 1;
         }
-        let mut values = [0.0, 0.0, 0.0, 1.0];
-        for (value, word) in values.iter_mut().zip(&words[..words.len().min(4)]) {
-            *value = number(line, word)?;
+        match count {
+            0..3 => {
+                let message = format!(
+                    "a vertex has {count} values; expected `v x y z`, `v x y z w` or `v x y z r g b`"
+                );
+                return Err(syntax(line, message));
+            }
+            3 | 4 => {}
+            6 => self.vertex_colours.add(|| format!("line {line}")),
+            _ => self.extra_values.add(|| format!("line {line}")),
         }
-        let weight = if words.len() == 4 { values[3] } else { 1.0 };
+        let weight = if count == 4 {
+            coordinate(line, first[3])?
+        } else {
+            1.0
+        };
         if weight == 0.0 || !weight.is_finite() {
-            return Err(syntax(
-                line,
-                format!(
-                    "the weight `{}` cannot divide a position; expected a finite number other than 0",
-                    words[3]
-                ),
-            ));
+            let message = format!(
+                "the weight `{}` cannot divide a position; expected a finite number other than 0",
+                shorten(first[3])
+            );
+            return Err(syntax(line, message));
         }
-        for (value, word) in values.iter_mut().zip(&words[..3]) {
-            *value /= weight;
+        let mut position = DVec3::ZERO;
+        for (axis, word) in first[..3].iter().enumerate() {
+            let value = coordinate(line, word)? / weight;
             if !value.is_finite() {
                 return Err(MeshError::NonFinite {
                     line,
@@ -185,218 +313,229 @@ impl Scanner {
                     limit: MAX_COORDINATE_M,
                 });
             }
+            position[axis] = value;
         }
-        self.positions
-            .push(DVec3::new(values[0], values[1], values[2]));
-        Ok(())
+        Ok(position)
     }
 
-    fn normal(&mut self, line: usize, rest: &str) -> Result<(), MeshError> {
-        let mut values = [0.0; 3];
-        let mut count = 0;
-        for word in words(rest) {
-            if let Some(value) = values.get_mut(count) {
-                *value = number(line, word)?;
-            }
-            count += 1;
-        }
-        if count != 3 {
-            return Err(syntax(
-                line,
-                format!("a normal has {count} values; expected `vn x y z`"),
-            ));
-        }
+    fn normal(&mut self, line: usize, rest: &str) {
         self.normals += 1;
+        let mut values = [f64::NAN; 3];
+        for (value, word) in values.iter_mut().zip(words(rest)) {
+            *value = number(word).unwrap_or(f64::NAN);
+        }
         let largest = values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        // Writing to a string cannot fail.
         if values.iter().all(|v| v.is_finite()) && largest > 0.0 {
             let [x, y, z] = values.map(|v| v / largest);
             let _ = writeln!(self.normal_text, "vn {x} {y} {z}");
         } else {
-            self.bad_normals += 1;
+            self.bad_normals.add(|| format!("line {line}"));
             self.normal_text.push_str("vn 0 0 0\n");
         }
-        Ok(())
     }
 
     fn face(&mut self, line: usize, rest: &str) -> Result<(), MeshError> {
-        self.faces += 1;
-        self.corners.clear();
+        self.face_count += 1;
+        let start = self.corners.len();
         for word in words(rest) {
             let corner = self.corner(line, word)?;
             self.corners.push(corner);
         }
-        if self.corners.len() < 3 {
-            self.small_faces += 1;
+        let count = self.corners.len() - start;
+        if count < 3 {
+            self.corners.truncate(start);
+            self.small_faces.add(|| format!("line {line}"));
             return Ok(());
         }
-        self.triangles += self.corners.len() - 2;
+        self.triangles += count - 2;
         if self.triangles > self.max_triangles {
             return Err(MeshError::TooManyTriangles {
                 line,
                 limit: self.max_triangles,
             });
         }
-        if self.corners.len() > 3 && self.is_concave() {
-            self.concave_faces += 1;
-        }
-        self.face_text.push('f');
-        for (position, normal) in &self.corners {
-            let _ = write!(self.face_text, " {position}//{normal}");
-        }
-        self.face_text.push('\n');
+        self.faces.push(Face {
+            line,
+            start,
+            count,
+            material: self.material,
+        });
         Ok(())
     }
 
-    /// One corner `position[/texture][/normal]`: absolute position index, and index into the rewritten normals.
-    fn corner(&mut self, line: usize, word: &str) -> Result<(usize, usize), MeshError> {
+    /// One corner `position[/texture][/normal]`. The geometry needs the position only; a normal that is not there is the face's.
+    fn corner(&mut self, line: usize, word: &str) -> Result<Corner, MeshError> {
         let mut parts = word.split('/');
-        let position = parts.next().unwrap_or_default();
-        let texture = parts.next().unwrap_or_default();
-        let normal = parts.next().unwrap_or_default();
         let whole = |part: &str| part.parse::<i64>().ok();
-        let (Some(position), true, None) = (
-            whole(position),
-            texture.is_empty() || whole(texture).is_some(),
-            parts.next(),
-        ) else {
-            return Err(corner_syntax(line, word));
+        let position = parts
+            .next()
+            .and_then(whole)
+            .ok_or_else(|| corner_syntax(line, word))?;
+        let position = self.position_index(line, position)?;
+        let normal = parts.nth(1).unwrap_or_default();
+        let index = match whole(normal) {
+            Some(index) if index < 0 => back(self.normals, index),
+            Some(index) => usize::try_from(index).ok(),
+            None => None,
         };
-        let before = self.positions.len();
-        let position = self.reference(line, "position", position, before)?;
-        if normal.is_empty() {
-            return Ok((position, 1));
+        let index = index.filter(|&index| (1..MAX_INDEX).contains(&index));
+        if index.is_none() && !normal.is_empty() {
+            self.corners_without_normal
+                .add(|| format!("`{}` on line {line}", shorten(word)));
         }
-        let Some(normal) = whole(normal) else {
-            return Err(corner_syntax(line, word));
-        };
-        let normal = self.reference(line, "normal", normal, self.normals)?;
-        Ok((position, normal + 1))
+        Ok(Corner {
+            position,
+            normal: index.map_or(NO_NORMAL, |index| index as u32),
+        })
     }
 
-    /// Turns an index as written into an absolute one. An index beyond those read so far is checked at the end.
-    fn reference(
-        &mut self,
-        line: usize,
-        what: &'static str,
-        index: i64,
-        before: usize,
-    ) -> Result<usize, MeshError> {
-        let face = self.faces;
+    /// The absolute index of a position. An index beyond those read so far is checked at the end.
+    fn position_index(&mut self, line: usize, index: i64) -> Result<u32, MeshError> {
+        let before = self.positions.len();
         let absolute = if index < 0 {
-            usize::try_from(index.unsigned_abs())
-                .ok()
-                .and_then(|back| (before + 1).checked_sub(back))
+            back(before, index)
         } else {
             usize::try_from(index).ok()
         };
-        let Some(absolute) = absolute.filter(|&i| i > 0) else {
+        let Some(absolute) = absolute.filter(|&index| index > 0) else {
             return Err(MeshError::FaceIndex {
                 line,
-                face,
-                what,
+                face: self.face_count,
                 index,
                 available: before,
                 available_before: before,
             });
         };
-        let highest = match what {
-            "normal" => &mut self.highest_normal,
-            _ => &mut self.highest_position,
-        };
-        if absolute > highest.index {
-            *highest = Reference {
+        if absolute > self.highest_position.index {
+            self.highest_position = Reference {
                 index: absolute,
                 line,
-                face,
+                face: self.face_count,
                 before,
             };
         }
-        Ok(absolute)
-    }
-
-    /// Whether the triangles of the fan around the first corner face different directions. The fan then covers the wrong area.
-    fn is_concave(&self) -> bool {
-        let at = |i: usize| self.positions.get(self.corners[i].0 - 1).copied();
-        let mut first: Option<DVec3> = None;
-        for i in 1..self.corners.len() - 1 {
-            let (Some(a), Some(b), Some(c)) = (at(0), at(i), at(i + 1)) else {
-                return false;
-            };
-            let turn = (b - a).cross(c - a);
-            match first {
-                None if turn != DVec3::ZERO => first = Some(turn),
-                Some(first) if first.dot(turn) < 0.0 => return true,
-                _ => {}
-            }
-        }
-        false
+        // An index that does not fit is refused at the end: no file has so many vertices.
+        Ok(absolute.min(MAX_INDEX) as u32)
     }
 
     fn finish(mut self) -> Result<Scan, MeshError> {
-        for (what, highest, available) in [
-            ("position", self.highest_position, self.positions.len()),
-            ("normal", self.highest_normal, self.normals),
-        ] {
-            if highest.index > available {
-                return Err(MeshError::FaceIndex {
-                    line: highest.line,
-                    face: highest.face,
-                    what,
-                    index: i64::try_from(highest.index).unwrap_or(i64::MAX),
-                    available,
-                    available_before: highest.before,
-                });
-            }
+        let highest = self.highest_position;
+        if highest.index > self.positions.len() {
+            return Err(MeshError::FaceIndex {
+                line: highest.line,
+                face: highest.face,
+                index: i64::try_from(highest.index).unwrap_or(i64::MAX),
+                available: self.positions.len(),
+                available_before: highest.before,
+            });
         }
-        if self.triangles == 0 {
+        if self.faces.is_empty() {
             return Err(MeshError::NoFaces {
                 vertices: self.positions.len(),
             });
         }
+        self.refuse_bad_positions()?;
+        self.drop_missing_normals();
         let warnings = self.warnings();
-        let mut text = String::with_capacity(
-            self.positions.len() * 32 + self.normal_text.len() + self.face_text.len(),
-        );
-        for p in &self.positions {
-            let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
+        let mut used_materials = vec![String::new(); self.materials.len()];
+        for (name, index) in std::mem::take(&mut self.materials) {
+            used_materials[index] = name;
         }
-        text.push_str(&std::mem::take(&mut self.normal_text));
-        text.push_str(&std::mem::take(&mut self.face_text));
         Ok(Scan {
-            text,
-            used_materials: self.used_materials,
-            library: self.library,
+            used_materials,
+            libraries: self.libraries,
             warnings,
+            positions: self.positions,
+            normal_text: self.normal_text,
+            faces: self.faces,
+            corners: self.corners,
         })
     }
 
+    /// Refuses the file if a face uses a vertex that cannot be read; one that no face uses is harmless.
+    fn refuse_bad_positions(&mut self) -> Result<(), MeshError> {
+        if self.bad_positions.is_empty() {
+            return Ok(());
+        }
+        let used = self.corners.iter().map(|corner| corner.position as usize);
+        match used
+            .filter(|index| self.bad_positions.contains_key(index))
+            .min()
+        {
+            Some(first) => Err(self.bad_positions[&first].clone()),
+            None => Ok(()),
+        }
+    }
+
+    /// Replaces indices of normals that the file does not have.
+    fn drop_missing_normals(&mut self) {
+        for face in &self.faces {
+            for corner in &mut self.corners[face.start..face.start + face.count] {
+                if corner.normal as usize > self.normals {
+                    let index = corner.normal;
+                    self.corners_without_normal
+                        .add(|| format!("normal {index} on line {}", face.line));
+                    corner.normal = NO_NORMAL;
+                }
+            }
+        }
+    }
+
     fn warnings(&self) -> Vec<Warning> {
-        let (line, keyword) = self.first_ignored.clone().unwrap_or_default();
-        let ignored = format!(
-            "lines are not used, the first is line {line} (`{keyword}`); only v, vn, f, usemtl and mtllib are."
-        );
+        let mut bad_vertices = Skipped::default();
+        for error in self.bad_positions.values() {
+            bad_vertices.add(|| error.to_string());
+        }
         [
-            (
-                self.small_faces,
+            bad_vertices.warning(
+                "mesh_bad_vertices",
+                "vertices cannot be read; no face uses them.",
+            ),
+            self.small_faces.warning(
                 "mesh_small_faces",
                 "faces with fewer than three corners were left out.",
             ),
-            (
-                self.concave_faces,
-                "mesh_concave_polygons",
-                "polygons are concave or twisted; they were cut into a fan around their first corner, which covers \
-                 another area. Triangulate the mesh before sending it.",
-            ),
-            (
-                self.bad_normals,
+            self.bad_normals.warning(
                 "mesh_bad_normals",
-                "normals are zero or not finite; face normals are used instead.",
+                "normals are zero, not finite or incomplete; face normals are used instead.",
             ),
-            (self.ignored, "mesh_ignored_lines", &ignored),
+            self.corners_without_normal.warning(
+                "mesh_missing_normals",
+                "corners of faces name a normal that the file does not have; face normals are used instead.",
+            ),
+            self.vertex_colours.warning(
+                "mesh_vertex_colours_ignored",
+                "vertices have a colour, which is not used; `Kd` of materials is.",
+            ),
+            self.extra_values.warning(
+                "mesh_extra_values_ignored",
+                "vertices have more values than `x y z`, which are not used.",
+            ),
+            self.ignored.warning(
+                "mesh_ignored_lines",
+                "lines are not used; only v, vn, f, usemtl and mtllib are.",
+            ),
         ]
         .into_iter()
-        .filter(|(count, ..)| *count > 0)
-        .map(|(count, code, sentence)| Warning::new(code, format!("{count} {sentence}")))
+        .flatten()
         .collect()
     }
+}
+
+/// The absolute index of the negative `index`, counted back from the `before` read so far; `None` before the first.
+fn back(before: usize, index: i64) -> Option<usize> {
+    let steps = usize::try_from(index.unsigned_abs()).ok()?;
+    (before + 1).checked_sub(steps)
+}
+
+/// A number of a `v` line; NaN where a C library wrote one.
+fn coordinate(line: usize, word: &str) -> Result<f64, MeshError> {
+    number(word).ok_or_else(|| {
+        let message = format!(
+            "`{}` is not a number; expected a decimal number such as -1.25 or 3e-2",
+            shorten(word)
+        );
+        syntax(line, message)
+    })
 }

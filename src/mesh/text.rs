@@ -1,60 +1,119 @@
-//! Words, names and numbers of OBJ and MTL lines.
+//! Lines, words, names and numbers of OBJ and MTL texts, in any encoding.
+
+use std::borrow::Cow;
+
+use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 use super::MeshError;
+use crate::stats::Warning;
 
-/// The name of the file in messages.
-pub(super) const OBJ: &str = "OBJ";
+/// A text, line by line. The geometry is ASCII in every encoding; the encoding matters only for names and comments.
+///
+/// UTF-16 is recognised by its byte order mark or by its zero bytes. In any other text, each line that is not UTF-8 is read as
+/// Windows-1252, so that the same bytes in OBJ and MTL are the same name. Lines end with LF, CR LF or CR.
+#[derive(Debug)]
+pub(super) struct Lines<'a> {
+    text: Cow<'a, [u8]>,
+}
 
-/// Longest name of a material or library, bytes. It is limited because the library copies a name at every change of material.
-const MAX_NAME_BYTES: usize = 255;
+impl<'a> Lines<'a> {
+    /// The lines of a file.
+    pub(super) fn of(bytes: &'a [u8]) -> Self {
+        let text = match utf_16(bytes) {
+            Some(encoding) => Cow::Owned(
+                encoding
+                    .decode_with_bom_removal(bytes)
+                    .0
+                    .into_owned()
+                    .into_bytes(),
+            ),
+            None => Cow::Borrowed(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)),
+        };
+        Self { text }
+    }
+
+    /// Each line with its number, counted from 1.
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
+        let mut rest: &[u8] = &self.text;
+        let lines = std::iter::from_fn(move || {
+            if rest.is_empty() {
+                return None;
+            }
+            let end = rest
+                .iter()
+                .position(|byte| matches!(byte, b'\n' | b'\r'))
+                .unwrap_or(rest.len());
+            let (line, after) = rest.split_at(end);
+            rest = after
+                .strip_prefix(b"\r\n")
+                .or_else(|| after.get(1..))
+                .unwrap_or_default();
+            Some(decoded(line))
+        });
+        lines.enumerate().map(|(index, line)| (index + 1, line))
+    }
+
+    /// Whether there is nothing but white space.
+    pub(super) fn are_blank(&self) -> bool {
+        self.text.iter().all(u8::is_ascii_whitespace)
+    }
+}
+
+/// The encoding of a UTF-16 text. A text of ASCII characters has a zero byte in every pair.
+fn utf_16(bytes: &[u8]) -> Option<&'static Encoding> {
+    match bytes {
+        [0xff, 0xfe, ..] => Some(UTF_16LE),
+        [0xfe, 0xff, ..] => Some(UTF_16BE),
+        [first, 0, second, 0, ..] if *first != 0 && *second != 0 => Some(UTF_16LE),
+        [0, first, 0, second, ..] if *first != 0 && *second != 0 => Some(UTF_16BE),
+        _ => None,
+    }
+}
+
+fn decoded(line: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(line) {
+        Ok(line) => line.into(),
+        Err(_) => WINDOWS_1252.decode_without_bom_handling(line).0,
+    }
+}
+
+/// A line's keyword and what follows it, both without white space around.
+///
+/// Only ASCII characters are white space: in names, the bytes of other encodings must not be trimmed.
+pub(super) fn keyword_of(line: &str) -> (&str, &str) {
+    let line = line.trim_ascii();
+    let end = line
+        .find(|c: char| c.is_ascii_whitespace())
+        .unwrap_or(line.len());
+    let (keyword, rest) = line.split_at(end);
+    (keyword, rest.trim_ascii())
+}
 
 /// Words of a line up to a trailing comment.
 pub(super) fn words(rest: &str) -> impl Iterator<Item = &str> {
-    rest.split_whitespace()
+    rest.split_ascii_whitespace()
         .take_while(|word| !word.starts_with('#'))
 }
 
-/// The name after a keyword: the rest of the line, which may contain spaces.
-pub(super) fn name<'a>(
-    file: &'static str,
-    line: usize,
-    keyword: &str,
-    rest: &'a str,
-) -> Result<&'a str, MeshError> {
-    let name = rest.trim();
-    if name.is_empty() || name.len() > MAX_NAME_BYTES {
-        return Err(MeshError::Syntax {
-            file,
-            line,
-            message: format!(
-                "`{keyword}` has a name of {} bytes; expected 1 … {MAX_NAME_BYTES} bytes",
-                name.len()
-            ),
-        });
+/// A decimal number; NaN for the words that C libraries write for NaN and infinity (`-nan(ind)`, `1.#QNAN`, `-1.#IND00`, `1.#INF`).
+/// `None` for anything else.
+pub(super) fn number(word: &str) -> Option<f64> {
+    if let Ok(value) = word.parse() {
+        return Some(value);
     }
-    Ok(name)
-}
-
-/// A decimal number of an OBJ line.
-pub(super) fn number(line: usize, word: &str) -> Result<f64, MeshError> {
-    word.parse().map_err(|_| {
-        syntax(
-            line,
-            format!(
-                "`{}` is not a number; expected a decimal number such as -1.25 or 3e-2",
-                shorten(word)
-            ),
-        )
-    })
+    let word = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
+    let is_not_finite = word.starts_with("nan(")
+        || word.strip_prefix("1.#").is_some_and(|rest| {
+            ["ind", "inf", "qnan", "snan", "nan"]
+                .iter()
+                .any(|kind| rest.starts_with(kind))
+        });
+    is_not_finite.then_some(f64::NAN)
 }
 
 /// A line of an OBJ that cannot be parsed.
 pub(super) fn syntax(line: usize, message: String) -> MeshError {
-    MeshError::Syntax {
-        file: OBJ,
-        line,
-        message,
-    }
+    MeshError::Syntax { line, message }
 }
 
 /// A corner of a face that cannot be parsed.
@@ -71,4 +130,28 @@ pub(super) fn corner_syntax(line: usize, word: &str) -> MeshError {
 /// At most 40 characters of the client's text, for messages.
 pub(super) fn shorten(word: &str) -> String {
     word.chars().take(40).collect()
+}
+
+/// Lines that are not used for the same reason: their number, and the first of them.
+#[derive(Debug, Default)]
+pub(super) struct Skipped {
+    count: usize,
+    first: String,
+}
+
+impl Skipped {
+    /// Counts a line; `what` describes it if it is the first.
+    pub(super) fn add(&mut self, what: impl FnOnce() -> String) {
+        if self.count == 0 {
+            self.first = what();
+        }
+        self.count += 1;
+    }
+
+    /// A warning with the number, `sentence`, and the first place; none if nothing was counted.
+    pub(super) fn warning(&self, code: &str, sentence: &str) -> Option<Warning> {
+        let Self { count, first } = self;
+        (*count > 0)
+            .then(|| Warning::new(code, format!("{count} {sentence} The first is {first}.")))
+    }
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use caustica::cli::scene_file::{is_plain_name, load, material_library};
+use caustica::cli::scene_file::load;
 use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
 use caustica::cli::{CliError, files};
 use caustica::config::Limits;
@@ -48,53 +48,113 @@ fn a_scene_file_is_read_with_its_meshes() {
     assert_ne!(changed.resolved.hash(), loaded.resolved.hash());
 }
 
-#[test]
-fn a_material_library_is_read_only_beside_its_mesh() {
-    let folder = Folder::new();
-    let limits = Limits::default();
-    let hash = |mesh: &str| {
-        let scene = folder.write("scene.json", &scene_text(mesh));
-        let loaded = load(&scene_args(&scene, &[]), None, &limits).unwrap();
-        (loaded.resolved.hash(), loaded.notes.join("\n"))
-    };
-    folder.write("secret.mtl", "newmtl red\nKd 1 0 0\n");
-    folder.write("m/near.mtl", "newmtl red\nKd 1 0 0\n");
-    folder.write("m/near.obj", &format!("mtllib near.mtl\n{TRIANGLE}"));
-    folder.write("m/far.obj", &format!("mtllib ../secret.mtl\n{TRIANGLE}"));
-    folder.write("m/gone.obj", &format!("mtllib gone.mtl\n{TRIANGLE}"));
-    let (near, _) = hash("m/near.obj");
-    assert!(hash("m/far.obj").1.contains("`../secret.mtl` is not read"));
-    assert!(hash("m/gone.obj").1.contains("`gone.mtl` cannot be read"));
-    folder.write("m/near.mtl", "newmtl red\nKd 0 1 0\n");
-    assert_ne!(
-        hash("m/near.obj").0,
-        near,
-        "the material is part of the mesh"
-    );
-    let far = hash("m/far.obj").0;
-    folder.write("secret.mtl", "newmtl red\nKd 0 1 0\n");
-    assert_eq!(hash("m/far.obj").0, far);
+/// The reflectance of the mesh of a scene in a folder, and the notes.
+fn albedo_of(folder: &Folder, mesh: &str) -> ([f32; 3], String) {
+    let scene = folder.write("s/scene.json", &scene_text(mesh));
+    let loaded = load(&scene_args(&scene, &[]), None, &Limits::default()).unwrap();
+    let albedo = loaded.resolved.meshes[0].materials[0].albedo;
+    (albedo, loaded.notes.join("\n"))
 }
 
 #[test]
-fn material_libraries_are_found_and_judged_by_name() {
-    let table: &[(&str, Option<&str>)] = &[
-        ("v 0 0 0\nmtllib a.mtl\nmtllib b.mtl", Some("a.mtl")),
-        ("  mtllib\ttwo words.mtl \r\n", Some("two words.mtl")),
-        ("# mtllib a.mtl\nmtllibx a.mtl\n", None),
-        ("", None),
-    ];
-    for (obj, name) in table {
-        assert_eq!(material_library(obj.as_bytes()).as_deref(), *name, "{obj}");
-    }
-    for name in ["a.mtl", "two words.mtl", ".hidden"] {
-        assert!(is_plain_name(name), "{name}");
-    }
-    for name in [
-        "", ".", "..", "../a", "a/b", "/a", "a\\b", "C:a", "a/", "./a", "a\0b",
+fn material_libraries_are_read_inside_the_scenes_folder() {
+    let folder = Folder::new();
+    for (name, kd) in [
+        ("s/m/near.mtl", "0.1"),
+        ("s/m/sub/deep.mtl", "0.2"),
+        ("s/shared/red.mtl", "0.3"),
+        ("s/m/two words.mtl", "0.4"),
+        ("s/m/blue.mtl", "0.5"),
+        ("secret.mtl", "1"),
+        ("s/m/passwd", "0.6"),
     ] {
-        assert!(!is_plain_name(name), "{name}");
+        let other = if name.ends_with("blue.mtl") {
+            "blue"
+        } else {
+            "red"
+        };
+        folder.write(name, &format!("newmtl {other}\nKd {kd} 0 0\n"));
     }
+    for (library, red, note) in [
+        ("near.mtl", 0.1, ""),
+        ("./near.mtl", 0.1, ""),
+        (".\\near.mtl", 0.1, ""),
+        ("sub/deep.mtl", 0.2, ""),
+        ("sub\\deep.mtl", 0.2, ""),
+        ("../shared/red.mtl", 0.3, ""),
+        ("sub/../../shared/./red.mtl", 0.3, ""),
+        ("two words.mtl", 0.4, ""),
+        ("blue.mtl near.mtl", 0.1, ""),
+        ("blue.mtl two words.mtl", 0.4, ""),
+        ("blue.mtl\nmtllib near.mtl", 0.1, ""),
+        (
+            "near.mtl\nmtllib ./near.mtl\nmtllib two words.mtl",
+            0.1,
+            "`red` on line 1",
+        ),
+        (
+            "C:\\Users\\someone\\near.mtl",
+            0.1,
+            "`near.mtl` beside the OBJ file was read instead",
+        ),
+        (
+            "D:/near.mtl",
+            0.1,
+            "`near.mtl` beside the OBJ file was read instead",
+        ),
+        (
+            "../../near.mtl",
+            0.1,
+            "`near.mtl` beside the OBJ file was read instead",
+        ),
+        (
+            "/etc/passwd",
+            0.6,
+            "`passwd` beside the OBJ file was read instead",
+        ),
+        (
+            "../../secret.mtl",
+            0.8,
+            "`../../secret.mtl` cannot be read as",
+        ),
+        ("gone.mtl", 0.8, "`gone.mtl` cannot be read as"),
+        ("..", 0.8, "cannot be read as"),
+    ] {
+        folder.write("s/m/mesh.obj", &format!("mtllib {library}\n{TRIANGLE}"));
+        let (albedo, notes) = albedo_of(&folder, "m/mesh.obj");
+        assert!(
+            (albedo[0] - red).abs() < 1e-6,
+            "{library}: {albedo:?} {notes}"
+        );
+        assert!(notes.contains(note), "{library}: {notes}");
+        let is_noted = notes.contains("material library") || notes.contains("several MTL");
+        assert_eq!(is_noted, !note.is_empty(), "{library}: {notes}");
+    }
+    // A mesh outside of the scene's folder has its own folder.
+    folder.write("else/out.mtl", "newmtl red\nKd 0.7 0 0\n");
+    for (library, red) in [("out.mtl", 0.7), ("../secret.mtl", 0.8)] {
+        folder.write("else/out.obj", &format!("mtllib {library}\n{TRIANGLE}"));
+        assert!(
+            (albedo_of(&folder, "../else/out.obj").0[0] - red).abs() < 1e-6,
+            "{library}"
+        );
+    }
+}
+
+#[test]
+fn a_material_library_is_part_of_the_mesh() {
+    let folder = Folder::new();
+    folder.write("m/near.obj", &format!("mtllib near.mtl\n{TRIANGLE}"));
+    let scene = folder.write("scene.json", &scene_text("m/near.obj"));
+    let hash = |kd: &str| {
+        folder.write("m/near.mtl", &format!("newmtl red\nKd {kd} 0 0\n"));
+        load(&scene_args(&scene, &[]), None, &Limits::default())
+            .unwrap()
+            .resolved
+            .hash()
+    };
+    assert_ne!(hash("0.1"), hash("0.2"));
+    assert_eq!(hash("0.1"), hash("0.1"));
 }
 
 #[test]

@@ -9,11 +9,11 @@ const TETRAHEDRON: &str =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
 fn read(text: &str) -> Result<Mesh, MeshError> {
-    obj::read(text.as_bytes(), None, &Limits::default())
+    obj::read(text.as_bytes(), &[], &Limits::default())
 }
 
 fn read_with(text: &str, mtl: &str) -> Result<Mesh, MeshError> {
-    obj::read(text.as_bytes(), Some(mtl.as_bytes()), &Limits::default())
+    obj::read(text.as_bytes(), &[mtl.as_bytes()], &Limits::default())
 }
 
 fn good(text: &str) -> Mesh {
@@ -100,7 +100,9 @@ fn spellings_of_the_same_mesh_agree() {
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1",
         "v 0 0 0 # corner\n  v 1 0 0\n\tv\t0 1 0\n\n# f 1 1 1 \\\nf 1 \\\n 2 \\\n3 # face\n",
         "v 0 0 0 1\nv 2 0 0 2\nv 0 .5 0 .5\nf 1 2 3\n",
-        "v 0 0 0 1 0 0\nv 1e0 0 0\nv 0 1. 0\nf 1 2 3\n",
+        "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r",
+        "v 0 0 0\r\n\r\nv 1e0 0 0\nv 0 1. 0\rf 1 2 3",
+        "mtllib\nusemtl\no\ng\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3/one\n",
         "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/99999\n",
         "o a\ng b\ns off\nv 0 0 0\nv 1 0 0\nv 0 1 0\ng c\nf 1// 2// 3//\ng d\n",
@@ -121,9 +123,114 @@ fn polygons_become_fans() {
     warned(&mesh, "mesh_open", "4 edges");
     let pentagon = good("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv -1 1 0\nf 1 2 3 4 5\n");
     assert_eq!(pentagon.triangles.len(), 3);
-    // An arrow head whose fan folds over itself.
+}
+
+/// Area of a mesh.
+fn area(mesh: &Mesh) -> f64 {
+    let of_triangle = |[a, b, c]: [Vec3; 3]| f64::from(0.5 * (b - a).cross(c - a).length());
+    mesh.triangles
+        .iter()
+        .map(|t| of_triangle(t.positions_m))
+        .sum()
+}
+
+#[test]
+fn concave_polygons_are_cut_by_their_ears() {
+    // An arrow head whose fan folds over itself, and a wall with a door, in each of its turns and both directions.
     let arrow = good("v 0 2 0\nv -1 0 0\nv 0 1 0\nv 1 0 0\nf 2 3 4 1\n");
-    warned(&arrow, "mesh_concave_polygons", "1 polygons");
+    assert!((area(&arrow) - 1.0).abs() < 1e-6, "{}", area(&arrow));
+    assert_eq!(codes(&arrow), ["mesh_open"]);
+    let wall = "v 0 0 0\nv 1 0 0\nv 1 2 0\nv 2 2 0\nv 2 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\n";
+    for start in 0..8 {
+        let mut corners: Vec<String> = (0..8).map(|i| ((start + i) % 8 + 1).to_string()).collect();
+        for normal in [Vec3::Z, Vec3::NEG_Z] {
+            let mesh = good(&format!("{wall}f {}\n", corners.join(" ")));
+            assert!((area(&mesh) - 7.0).abs() < 1e-5, "{}", area(&mesh));
+            assert_eq!(mesh.triangles.len(), 6);
+            assert!(mesh.triangles.iter().all(|t| t.normals == [normal; 3]));
+            warned(&mesh, "mesh_open", "8 edges");
+            assert_eq!(codes(&mesh), ["mesh_open"]);
+            corners.reverse();
+        }
+    }
+}
+
+#[test]
+fn corners_on_straight_edges_stay_corners() {
+    // A wall with a door whose lintel and sides have corners in the middle, where neighbours end; the neighbours close the edges.
+    let ring = [
+        [0, 0],
+        [1, 0],
+        [1, 1],
+        [1, 2],
+        [2, 2],
+        [2, 1],
+        [2, 0],
+        [3, 0],
+        [3, 1],
+        [3, 2],
+        [3, 3],
+        [2, 3],
+        [1, 3],
+        [0, 3],
+    ];
+    let vertices: String = ring.iter().map(|[x, y]| format!("v {x} {y} 0\n")).collect();
+    let face = |corners: &[usize]| {
+        let words: Vec<String> = corners.iter().map(usize::to_string).collect();
+        format!("f {}\n", words.join(" "))
+    };
+    let whole: Vec<usize> = (1..=14).collect();
+    let mesh = good(&format!("{vertices}{}", face(&whole)));
+    assert!((area(&mesh) - 7.0).abs() < 1e-5);
+    warned(&mesh, "mesh_open", "14 edges");
+    // The same wall from behind, in rectangles: the two close each other.
+    let back: String = [[1, 14, 13, 2], [4, 13, 12, 5], [7, 12, 11, 8]]
+        .iter()
+        .map(|c| face(c))
+        .collect();
+    let sheet = good(&format!("{vertices}{}{back}", face(&whole)));
+    assert!((area(&sheet) - 14.0).abs() < 1e-4);
+}
+
+#[test]
+fn polygons_that_cross_themselves_are_reported() {
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\n";
+    let bow = good(&format!("{square}f 1 2 4 3\n"));
+    warned(&bow, "mesh_crossed_polygons", "1 polygons cross");
+    warned(&bow, "mesh_crossed_polygons", "on line 6");
+    let crossed = good(&format!("{square}f 1 5 4 3\n"));
+    warned(&crossed, "mesh_crossed_polygons", "1 polygons cross");
+}
+
+#[test]
+fn a_polygon_with_very_many_corners_is_cut() {
+    // A star of 20 000 points.
+    use std::fmt::Write as _;
+    let count = 40_000;
+    let mut text = String::new();
+    for i in 0..count {
+        let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
+        let radius = if i % 2 == 0 { 2.0 } else { 1.0 };
+        writeln!(
+            text,
+            "v {} {} 0",
+            radius * angle.cos(),
+            radius * angle.sin()
+        )
+        .unwrap();
+    }
+    text.push('f');
+    for i in 1..=count {
+        write!(text, " {i}").unwrap();
+    }
+    let mesh = good(&text);
+    assert_eq!(mesh.triangles.len(), count as usize - 2);
+    let right = f64::from(count / 2) * 2.0 * (std::f64::consts::TAU / f64::from(count)).sin();
+    assert!(
+        (area(&mesh) / right - 1.0).abs() < 1e-3,
+        "{} {right}",
+        area(&mesh)
+    );
 }
 
 #[test]
@@ -135,6 +242,7 @@ fn lines_and_points_are_not_triangles() {
     warned(&mesh, "mesh_ignored_lines", "3 lines");
     warned(&mesh, "mesh_ignored_lines", "line 5 (`l`)");
     warned(&mesh, "mesh_small_faces", "3 faces");
+    warned(&mesh, "mesh_small_faces", "line 8");
 }
 
 #[test]
@@ -156,6 +264,31 @@ fn normals_come_from_the_file_where_it_has_good_ones() {
     // A corner without a normal takes the face's, not that of the corner before it.
     assert_eq!([second, third], [Vec3::NEG_Z; 2]);
     warned(&mesh, "mesh_bad_normals", "2 normals");
+    for words in [
+        "-nan(ind) -nan(ind) -nan(ind)",
+        "-1.#IND 1.#QNAN0 0",
+        "1.#INF00 0 1",
+        "0 1",
+        "a b c",
+        "",
+        "0 +nan(0x8000) 1",
+    ] {
+        let mesh = good(&format!("{vertices}vn {words}\nf 1//1 2//1 3//1\n"));
+        assert_eq!(mesh.triangles[0].normals, [Vec3::Z; 3], "{words}");
+        warned(&mesh, "mesh_bad_normals", "1 normals");
+        warned(&mesh, "mesh_bad_normals", "The first is line 4.");
+    }
+    // An exporter's "none here", indices beyond the file, and words that are no index.
+    for normal in ["0", "2", "-2", "99999999999999999999", "x", "1.0"] {
+        let mesh = good(&format!("{vertices}vn 0 1 0\nf 1//1 2//{normal} 3/0/1\n"));
+        assert_eq!(
+            mesh.triangles[0].normals,
+            [Vec3::Y, Vec3::Z, Vec3::Y],
+            "{normal}"
+        );
+        warned(&mesh, "mesh_missing_normals", "1 corners");
+        warned(&mesh, "mesh_missing_normals", "line 5");
+    }
     let turned = good(&format!("{vertices}vn 0 0 -1\nf 1//1 2//1 3//1\n"));
     assert_eq!(turned.triangles[0].normals, [Vec3::NEG_Z; 3]);
     warned(&turned, "mesh_normals_against_winding", "1 triangles");
@@ -269,7 +402,12 @@ fn missing_and_unused_materials_are_reported() {
         "newmtl red\nmap_Kd a.png\nnewmtl blue\nKd spectral b.rfl\n",
     )
     .unwrap();
-    warned(&textured, "mesh_textures_ignored", "1 textures");
+    warned(
+        &textured,
+        "mesh_textures_ignored",
+        "1 materials have textures",
+    );
+    warned(&textured, "mesh_textures_ignored", "`red` (`map_Kd a.png`)");
     warned(&textured, "mesh_spectra_ignored", "1 spectral");
     assert_eq!(textured.materials[0].albedo, [DEFAULT_ALBEDO; 3]);
 }
@@ -299,25 +437,64 @@ fn empty_and_binary_bodies_are_refused() {
     for text in ["", " \n\t\r\n", "\u{feff}"] {
         assert_eq!(refused(text, &["empty", "`f a b c`"]), MeshError::Empty);
     }
-    let error = obj::read(b"v 0 0 0\nv \xff 0 0\n", None, &Limits::default()).unwrap_err();
-    assert_eq!(
-        error,
-        MeshError::NotUtf8 {
-            file: "OBJ",
-            offset: 10,
-            line: 2
-        }
-    );
-    let error = obj::read(TRIANGLE.as_bytes(), Some(b"\x89PNG"), &Limits::default()).unwrap_err();
-    assert_eq!(
-        error,
-        MeshError::NotUtf8 {
-            file: "MTL",
-            offset: 0,
-            line: 1
-        }
-    );
-    assert!(error.to_string().contains("MTL is not UTF-8"));
+    let picture = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\xff\xfe";
+    let error = obj::read(picture, &[], &Limits::default()).unwrap_err();
+    assert_eq!(error, MeshError::NoFaces { vertices: 0 });
+    let mesh = obj::read(TRIANGLE.as_bytes(), &[picture], &Limits::default()).unwrap();
+    warned(&mesh, "mesh_mtl_ignored", "none of its 0 materials");
+}
+
+#[test]
+fn names_and_comments_may_have_any_encoding() {
+    // "stein äöü" in Windows-1252, UTF-8 and, as characters that end in a backslash's byte, Shift JIS.
+    let names: [&[u8]; 3] = [b"stein \xe4\xf6\xfc", "stein äöü".as_bytes(), b"\x95\x5c"];
+    for name in names {
+        let mut obj = b"# gr\xfc\xdfe \\\no ".to_vec();
+        obj.extend_from_slice(name);
+        obj.extend_from_slice(b"\ng ");
+        obj.extend_from_slice(name);
+        obj.extend_from_slice(b"\nv 0 0 0\nv 1 0 0 # \xe9\nv 0 1 0\nusemtl ");
+        obj.extend_from_slice(name);
+        obj.extend_from_slice(b"\nf 1 2 3\n");
+        let mut mtl = b"# \xff\xfe\nnewmtl ".to_vec();
+        mtl.extend_from_slice(name);
+        mtl.extend_from_slice(b"\r\nKd 0.1 0.7 0.2\r\n");
+        let mesh = obj::read(&obj, &[&mtl], &Limits::default()).unwrap();
+        assert_eq!(mesh.materials[0].albedo, [0.1, 0.7, 0.2]);
+        assert_eq!(codes(&mesh), ["mesh_open"]);
+    }
+    // The same name in a file of each encoding.
+    let obj = PAINTED.replace("red", "röd");
+    let mtl = b"newmtl r\xf6d\nKd 0.1 0.7 0.2\nnewmtl blue\nKd 0 0 1\n";
+    let mesh = obj::read(obj.as_bytes(), &[mtl], &Limits::default()).unwrap();
+    assert_eq!(mesh.materials[0].name, "röd");
+    assert_eq!(mesh.warnings, vec![]);
+}
+
+#[test]
+fn utf_16_is_read() {
+    for (mark, big_endian) in [(true, false), (true, true), (false, false), (false, true)] {
+        let encode = |text: &str| -> Vec<u8> {
+            let marked = if mark {
+                format!("\u{feff}{text}")
+            } else {
+                text.to_owned()
+            };
+            let unit = |unit: u16| {
+                if big_endian {
+                    unit.to_be_bytes()
+                } else {
+                    unit.to_le_bytes()
+                }
+            };
+            marked.encode_utf16().flat_map(unit).collect()
+        };
+        let obj = encode(&PAINTED.replace("red", "röd").replace('\n', "\r\n"));
+        let mtl = encode("newmtl röd\r\nKd 0.1 0.7 0.2\r\nnewmtl blue\r\nKd 0 0 1\r\n");
+        let mesh = obj::read(&obj, &[&mtl], &Limits::default()).unwrap();
+        assert_eq!(mesh.materials[0].albedo, [0.1, 0.7, 0.2]);
+        assert_eq!(mesh.warnings, vec![]);
+    }
 }
 
 #[test]
@@ -337,18 +514,16 @@ fn a_mesh_without_faces_is_refused() {
 
 #[test]
 fn indices_out_of_range_are_refused() {
-    for (face, index, what) in [
-        ("1 2 4", 4, "position"),
-        ("0 1 2", 0, "position"),
-        ("1 2 -4", -4, "position"),
-        ("1 2 18446744073709551", 18_446_744_073_709_551, "position"),
-        ("1 2 -9223372036854775808", i64::MIN, "position"),
-        ("1//1 2//1 3//2", 2, "normal"),
-        ("1//1 2//1 3//-2", -2, "normal"),
-        ("1//0 2//1 3//1", 0, "normal"),
+    for (face, index) in [
+        ("1 2 4", 4),
+        ("0 1 2", 0),
+        ("1 2 -4", -4),
+        ("1 2 4294967296", 4_294_967_296),
+        ("1 2 18446744073709551", 18_446_744_073_709_551),
+        ("1 2 -9223372036854775808", i64::MIN),
     ] {
         let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1 2 3\nf {face}\n");
-        let needle = format!("{what} index {index} is out of range");
+        let needle = format!("position index {index} is out of range");
         let error = refused(&text, &["line 6, face 2", &needle, "accepted are 1 … "]);
         assert!(matches!(
             error,
@@ -362,24 +537,64 @@ fn indices_out_of_range_are_refused() {
 }
 
 #[test]
-fn coordinates_beyond_sense_are_refused() {
-    for word in ["nan", "inf", "-infinity", "1e999"] {
+fn coordinates_beyond_sense_are_refused_where_a_face_uses_them() {
+    let bad = |vertex: &str| format!("v 0 0 0\nv {vertex}\nv 0 1 0\nf 1 2 3\n");
+    for word in [
+        "nan",
+        "inf",
+        "-infinity",
+        "1e999",
+        "-nan(ind)",
+        "1.#INF",
+        "-1.#IND0",
+    ] {
         let error = refused(
-            &format!("v 0 0 0\nv 0 {word} 0\n"),
+            &bad(&format!("0 {word} 0")),
             &["line 2", word, "not finite"],
         );
         assert!(matches!(error, MeshError::NonFinite { line: 2, .. }));
     }
     let error = refused(
-        "v 1.5e9 0 0\n",
-        &["line 1", "`1.5e9`", "too large", "-1e9 … 1e9"],
+        &bad("1.5e9 0 0"),
+        &["line 2", "`1.5e9`", "too large", "-1e9 … 1e9"],
     );
-    assert!(matches!(error, MeshError::TooLarge { line: 1, .. }));
+    assert!(matches!(error, MeshError::TooLarge { line: 2, .. }));
     // A weight divides: 5e8 / 0.1.
     assert!(matches!(
-        read("v 5e8 0 0 0.1\n"),
+        read(&bad("5e8 0 0 0.1")),
         Err(MeshError::TooLarge { .. })
     ));
+    // The geometry does not need a vertex of no face.
+    let mesh = good(&format!("{TRIANGLE}v nan 0 0\nv 1,5 0 0\nv 1\n"));
+    assert_eq!(mesh.triangles.len(), 1);
+    warned(&mesh, "mesh_bad_vertices", "3 vertices");
+    warned(
+        &mesh,
+        "mesh_bad_vertices",
+        "OBJ line 5: coordinate `nan` is not finite",
+    );
+}
+
+#[test]
+fn further_values_of_vertices_are_named() {
+    let mesh = good("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0 1 0\nf 1 2 3\n");
+    assert_eq!(mesh.triangles, good(TRIANGLE).triangles);
+    warned(&mesh, "mesh_vertex_colours_ignored", "3 vertices");
+    // Seven values are a colour with alpha or with a weight; five and more than seven are in no description of the format.
+    let mesh = good("v 0 0 0 1 0 0 1\nv 1 0 0 a b\nv 0 1 0 1 2 3 4 5 6\nf 1 2 3\n");
+    assert_eq!(mesh.triangles, good(TRIANGLE).triangles);
+    warned(&mesh, "mesh_extra_values_ignored", "3 vertices");
+    warned(&mesh, "mesh_extra_values_ignored", "line 1");
+}
+
+#[test]
+fn free_form_surfaces_are_left_out() {
+    let mesh = good(&format!(
+        "{TRIANGLE}vp 0.5 0.5\ncstype bezier\ndeg 3 3\nsurf 0 1 0 1 1 2 \\\n3 1\nparm u 0 1\nend\nbevel on\nlod 2\n"
+    ));
+    assert_eq!(mesh.triangles.len(), 1);
+    warned(&mesh, "mesh_ignored_lines", "8 lines");
+    warned(&mesh, "mesh_ignored_lines", "line 5 (`vp`)");
 }
 
 #[test]
@@ -388,7 +603,7 @@ fn too_many_triangles_are_refused_early() {
         max_triangles: 3,
         ..Limits::default()
     };
-    let read = |text: &str| obj::read(text.as_bytes(), None, &limits);
+    let read = |text: &str| obj::read(text.as_bytes(), &[], &limits);
     assert!(read(&format!("{TRIANGLE}f 1 3 2\n")).is_ok());
     // What follows the face that is too many is not looked at.
     let error = read(&format!("{TETRAHEDRON}v broken\n")).unwrap_err();
@@ -414,68 +629,150 @@ fn a_mesh_of_slivers_is_refused() {
 
 #[test]
 fn syntax_errors_name_the_line() {
-    let long = "x".repeat(300);
+    let bad = |vertex: &str| format!("v 0 0 0\n{vertex}\nv 0 1 0\nf 1 2 3\n");
     for (text, needles) in [
-        ("v 0 0\n", ["OBJ line 1", "2 values"]),
-        ("v 0 0 0 1 1\n", ["OBJ line 1", "5 values"]),
-        ("\nv 1,5 0 0\n", ["OBJ line 2", "`1,5` is not a number"]),
-        ("v 0 0 0 0\n", ["OBJ line 1", "weight `0`"]),
-        ("v 0 0 0 nan\n", ["OBJ line 1", "weight `nan`"]),
-        ("vn 0 1\n", ["OBJ line 1", "2 values"]),
-        ("vn 0 1 0 0\n", ["OBJ line 1", "4 values"]),
-        ("vn a b c\n", ["OBJ line 1", "`a` is not a number"]),
+        (bad("v 0 0"), ["OBJ line 2", "2 values"]),
+        (bad("v 1,5 0 0"), ["OBJ line 2", "`1,5` is not a number"]),
+        (bad("v 0 0 0 0"), ["OBJ line 2", "weight `0`"]),
+        (bad("v 0 0 0 nan"), ["OBJ line 2", "weight `nan`"]),
         (
-            "v 0 0 0\nf 1 one 1\n",
+            "v 0 0 0\nf 1 one 1\n".to_owned(),
             ["OBJ line 2", "`one` is not a face corner"],
         ),
-        ("v 0 0 0\nf 1 /1 1\n", ["OBJ line 2", "`/1` is not"]),
-        ("v 0 0 0\nf 1 1/1/1/1 1\n", ["OBJ line 2", "`1/1/1/1`"]),
-        ("v 0 0 0\nf 1 1.5 1\n", ["OBJ line 2", "whole numbers"]),
-        ("usemtl\n", ["OBJ line 1", "name of 0 bytes"]),
         (
-            &format!("mtllib {long}\n"),
-            ["OBJ line 1", "name of 300 bytes"],
+            "v 0 0 0\nf 1 /1 1\n".to_owned(),
+            ["OBJ line 2", "`/1` is not"],
+        ),
+        (
+            "v 0 0 0\nf 1 1.5 1\n".to_owned(),
+            ["OBJ line 2", "whole numbers"],
         ),
     ] {
-        let error = refused(text, &needles);
-        assert!(
-            matches!(error, MeshError::Syntax { file: "OBJ", .. }),
-            "{error:?}"
+        let error = refused(&text, &needles);
+        assert!(matches!(error, MeshError::Syntax { .. }), "{error:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_read_in_an_mtl_is_named() {
+    for (mtl, needles) in [
+        (
+            "newmtl red\nKd 0.5 0.5\n",
+            ["1 lines", "line 2 (`Kd 0.5 0.5`)"],
+        ),
+        ("newmtl red\nKd\n", ["1 lines", "line 2 (`Kd `)"]),
+        (
+            "newmtl red\nKd red\n",
+            ["expected `newmtl name`", "line 2 (`Kd red`)"],
+        ),
+        ("Kd 1 1 1\nnewmtl red\n", ["1 lines", "line 1"]),
+    ] {
+        let mesh = read_with(PAINTED, mtl).unwrap();
+        assert_eq!(mesh.materials[0].albedo, [DEFAULT_ALBEDO; 3]);
+        for needle in needles {
+            warned(&mesh, "mesh_material_unreadable", needle);
+        }
+    }
+    let long = "x".repeat(3000);
+    let obj = PAINTED.replace("red", &long);
+    let mesh = read_with(
+        &obj,
+        &format!("newmtl\nKd 1 0 0\nnewmtl {long}\nKd 0.5\nnewmtl blue\n"),
+    )
+    .unwrap();
+    assert_eq!(mesh.materials[0].name, long);
+    assert_eq!(mesh.materials[0].albedo, [0.5; 3]);
+}
+
+#[test]
+fn a_look_that_is_not_drawn_is_named() {
+    for (statement, code) in [
+        ("d 0.05", "mesh_transparency_ignored"),
+        ("d -halo 0.5", "mesh_transparency_ignored"),
+        ("Tr 0.95", "mesh_transparency_ignored"),
+        ("Tf 0.5 1 1", "mesh_transparency_ignored"),
+        ("illum 4", "mesh_transparency_ignored"),
+        ("illum 3", "mesh_gloss_ignored"),
+        ("Ks 0.5 0.5 0.5", "mesh_gloss_ignored"),
+        ("Pm 1", "mesh_gloss_ignored"),
+        ("Ke 1 1 0", "mesh_emission_ignored"),
+        ("map_Kd -s 2 2 2 a.png", "mesh_textures_ignored"),
+        ("map_d a.png", "mesh_textures_ignored"),
+        ("bump a.png", "mesh_textures_ignored"),
+    ] {
+        let mtl = format!("newmtl red\nKd 1 0 0\n{statement}\nnewmtl blue\nKd 0 0 1\n");
+        let mesh = read_with(PAINTED, &mtl).unwrap();
+        assert_eq!(codes(&mesh), [code], "{statement}");
+        warned(&mesh, code, &format!("1 materials "));
+        warned(&mesh, code, &format!("`red` (`{statement}`)"));
+        // A material that no face uses has no look.
+        let unused = format!("{mtl}newmtl other\nKe 1 1 1\nd 0\n");
+        assert_eq!(read_with(PAINTED, &unused).unwrap().warnings, mesh.warnings);
+    }
+    for statement in [
+        "d 1",
+        "d 1.0 # opaque",
+        "Tr 0",
+        "Tf 1 1 1",
+        "illum 1",
+        "illum 2",
+        "Ks 0 0 0",
+        "Ke 0.0 0.0 0.0",
+        "Ns 250",
+        "Ni 1.45",
+        "Ka 1 1 1",
+        "Pm 0",
+    ] {
+        let mtl = format!("newmtl red\nKd 1 0 0\n{statement}\nnewmtl blue\nKd 0 0 1\n");
+        assert_eq!(
+            read_with(PAINTED, &mtl).unwrap().warnings,
+            vec![],
+            "{statement}"
         );
     }
-    for (mtl, needles) in [
-        ("newmtl a\nKd 0.5 0.5\n", ["MTL line 2", "2 values"]),
-        ("newmtl a\nKd\n", ["MTL line 2", "0 values"]),
-        (
-            "newmtl a\nKd red\n",
-            ["MTL line 2", "`red` is not a number"],
+}
+
+#[test]
+fn several_libraries_are_read_and_the_first_counts() {
+    let first: &[u8] = b"newmtl red\nKd 1 0 0\nnewmtl red\nKd 0.9 0 0\n";
+    let second: &[u8] = b"newmtl red\nKd 0 1 0\nKe 1 1 1\nnewmtl blue\nKd 0 0 1\n";
+    let read = |files: &[&[u8]]| obj::read(PAINTED.as_bytes(), files, &Limits::default()).unwrap();
+    let mesh = read(&[first, second]);
+    let albedo: Vec<[f32; 3]> = mesh.materials.iter().map(|m| m.albedo).collect();
+    assert_eq!(albedo, [[0.9, 0.0, 0.0], [0.0, 0.0, 1.0]]);
+    assert_eq!(codes(&mesh), ["mesh_material_repeated"]);
+    warned(&mesh, "mesh_material_repeated", "`red` on line 1");
+    let turned = read(&[second, first]);
+    assert_eq!(turned.materials[0].albedo, [0.0, 1.0, 0.0]);
+    assert_ne!(turned.id, mesh.id);
+    assert_eq!(
+        obj::material_libraries(
+            b"mtllib a.mtl b.mtl\n# mtllib c.mtl\nmtllibx d\n  mtllib\ttwo words.mtl \r\nmtllib\n"
         ),
-        ("Kd 1 1 1\n", ["MTL line 1", "before any material"]),
-        ("newmtl\n", ["MTL line 1", "name of 0 bytes"]),
-    ] {
-        let message = read_with(TRIANGLE, mtl).unwrap_err().to_string();
-        assert!(needles.iter().all(|n| message.contains(n)), "{message}");
-    }
+        ["a.mtl b.mtl", "two words.mtl"]
+    );
 }
 
 #[test]
 fn different_uploads_have_different_ids() {
     assert_eq!(
-        obj::id(TRIANGLE.as_bytes(), None),
+        obj::id(TRIANGLE.as_bytes(), &[]),
         format!("blake3:{}", blake3::hash(TRIANGLE.as_bytes()).to_hex())
     );
-    assert_eq!(good(TRIANGLE).id, obj::id(TRIANGLE.as_bytes(), None));
-    let pairs: [(&[u8], Option<&[u8]>); 6] = [
-        (b"ab", None),
-        (b"ab", Some(b"")),
-        (b"a", Some(b"b")),
-        (b"", Some(b"ab")),
-        (b"ba", Some(b"")),
+    assert_eq!(good(TRIANGLE).id, obj::id(TRIANGLE.as_bytes(), &[]));
+    let pairs: [(&[u8], &[&[u8]]); 8] = [
+        (b"ab", &[]),
+        (b"ab", &[b""]),
+        (b"a", &[b"b"]),
+        (b"a", &[b"", b"b"]),
+        (b"a", &[b"b", b""]),
+        (b"", &[b"ab"]),
+        (b"ba", &[b""]),
         // What the hash of a pair takes in, sent as one file.
-        (b"\x01\0\0\0\0\0\0\0a\x01\0\0\0\0\0\0\0b", None),
+        (b"\x01\0\0\0\0\0\0\0a\x01\0\0\0\0\0\0\0b", &[]),
     ];
     let ids: std::collections::BTreeSet<String> =
-        pairs.iter().map(|(o, m)| obj::id(o, *m)).collect();
+        pairs.iter().map(|(o, m)| obj::id(o, m)).collect();
     assert_eq!(ids.len(), pairs.len());
 }
 
@@ -486,7 +783,7 @@ fn the_same_bytes_give_the_same_mesh() {
         "/scenes/meshes/torus_knot.obj"
     ))
     .unwrap();
-    let read = || obj::read(&text, None, &Limits::default()).unwrap();
+    let read = || obj::read(&text, &[], &Limits::default()).unwrap();
     let (first, second) = (read(), read());
     assert_eq!(first.triangles, second.triangles);
     assert_eq!(first.hierarchy, second.hierarchy);

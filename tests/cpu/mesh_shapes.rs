@@ -286,12 +286,12 @@ fn an_upload_of_the_text_is_the_same_mesh() {
         let shape = Shape::named(name).unwrap();
         let text = shape.obj();
         let inserted = MeshStore::default()
-            .insert_obj(text.as_bytes(), None)
+            .insert_obj(text.as_bytes(), &[])
             .unwrap();
         assert!(inserted.created);
         assert_eq!(inserted.mesh.id, mesh(name).id);
         assert_eq!(inserted.mesh.triangles, mesh(name).triangles);
-        assert_eq!(obj::id(text.as_bytes(), None), mesh(name).id);
+        assert_eq!(obj::id(text.as_bytes(), &[]), mesh(name).id);
     }
 }
 

@@ -20,12 +20,12 @@ fn store(bytes: u64) -> MeshStore {
 #[test]
 fn the_same_bytes_are_kept_once() {
     let store = MeshStore::default();
-    let first = store.insert_obj(obj(1).as_bytes(), None).unwrap();
-    let second = store.insert_obj(obj(1).as_bytes(), None).unwrap();
+    let first = store.insert_obj(obj(1).as_bytes(), &[]).unwrap();
+    let second = store.insert_obj(obj(1).as_bytes(), &[]).unwrap();
     assert!(first.created && !second.created);
     assert!(Arc::ptr_eq(&first.mesh, &second.mesh));
     let with_mtl = store
-        .insert_obj(obj(1).as_bytes(), Some(b"newmtl a\n"))
+        .insert_obj(obj(1).as_bytes(), &[b"newmtl a\n"])
         .unwrap();
     assert!(with_mtl.created);
     assert_ne!(with_mtl.mesh.id, first.mesh.id);
@@ -39,7 +39,7 @@ fn meshes_are_found_listed_and_removed() {
     let ids: Vec<String> = (1..=5)
         .map(|h| {
             store
-                .insert_obj(obj(h).as_bytes(), None)
+                .insert_obj(obj(h).as_bytes(), &[])
                 .unwrap()
                 .mesh
                 .id
@@ -67,14 +67,14 @@ fn meshes_are_found_listed_and_removed() {
     assert!(store.get(&ids[2]).is_none());
     assert_eq!(store.list().len(), 4);
     assert_eq!(held.triangles.len(), 1, "a frame under way keeps its mesh");
-    assert!(store.insert_obj(obj(3).as_bytes(), None).unwrap().created);
+    assert!(store.insert_obj(obj(3).as_bytes(), &[]).unwrap().created);
     assert!(!store.remove("blake3:nothing"));
 }
 
 #[test]
 fn info_is_what_the_api_says() {
     let store = MeshStore::default();
-    let mesh = store.insert_obj(obj(2).as_bytes(), None).unwrap().mesh;
+    let mesh = store.insert_obj(obj(2).as_bytes(), &[]).unwrap().mesh;
     let json = serde_json::to_value(mesh.info()).unwrap();
     assert_eq!(json["bounds_m"]["max"], serde_json::json!([1.0, 2.0, 0.0]));
     assert_eq!(json["materials"][0]["name"], "");
@@ -90,7 +90,7 @@ fn bytes_grow_with_the_triangles() {
         "/scenes/meshes/teapot.obj"
     ))
     .unwrap();
-    let teapot = store.insert_obj(&text, None).unwrap().mesh;
+    let teapot = store.insert_obj(&text, &[]).unwrap().mesh;
     // 76 bytes a triangle and two nodes of 32 bytes.
     let least = teapot.triangles.len() as u64 * (76 + 64) - 32;
     assert!(
@@ -103,14 +103,14 @@ fn bytes_grow_with_the_triangles() {
 #[test]
 fn a_full_store_refuses_and_recovers() {
     let one = MeshStore::default()
-        .insert_obj(obj(1).as_bytes(), None)
+        .insert_obj(obj(1).as_bytes(), &[])
         .unwrap()
         .mesh
         .bytes();
     let store = store(2 * one);
-    let first = store.insert_obj(obj(1).as_bytes(), None).unwrap().mesh;
-    store.insert_obj(obj(2).as_bytes(), None).unwrap();
-    let error = store.insert_obj(obj(3).as_bytes(), None).unwrap_err();
+    let first = store.insert_obj(obj(1).as_bytes(), &[]).unwrap().mesh;
+    store.insert_obj(obj(2).as_bytes(), &[]).unwrap();
+    let error = store.insert_obj(obj(3).as_bytes(), &[]).unwrap_err();
     assert_eq!(
         error,
         MeshError::StoreFull {
@@ -126,17 +126,17 @@ fn a_full_store_refuses_and_recovers() {
     );
     assert_eq!(store.list().len(), 2);
     // What is there already needs no room.
-    assert!(!store.insert_obj(obj(2).as_bytes(), None).unwrap().created);
+    assert!(!store.insert_obj(obj(2).as_bytes(), &[]).unwrap().created);
     assert!(store.remove(&first.id));
     assert_eq!(store.bytes(), one);
-    assert!(store.insert_obj(obj(3).as_bytes(), None).unwrap().created);
+    assert!(store.insert_obj(obj(3).as_bytes(), &[]).unwrap().created);
 }
 
 #[test]
 fn a_bad_mesh_leaves_no_trace() {
     let store = store(u64::MAX);
-    assert_eq!(store.insert_obj(b"", None).unwrap_err(), MeshError::Empty);
-    assert!(store.insert_obj(b"v 0 0 0\nf 1 2 3\n", None).is_err());
+    assert_eq!(store.insert_obj(b"", &[]).unwrap_err(), MeshError::Empty);
+    assert!(store.insert_obj(b"v 0 0 0\nf 1 2 3\n", &[]).is_err());
     assert!(store.list().is_empty());
     assert_eq!(store.bytes(), 0);
 }
@@ -147,9 +147,9 @@ fn the_store_applies_the_triangle_limit() {
         max_triangles: 1,
         ..Limits::default()
     });
-    assert!(store.insert_obj(obj(1).as_bytes(), None).is_ok());
+    assert!(store.insert_obj(obj(1).as_bytes(), &[]).is_ok());
     let error = store
-        .insert_obj(format!("{}f 1 3 2\n", obj(1)).as_bytes(), None)
+        .insert_obj(format!("{}f 1 3 2\n", obj(1)).as_bytes(), &[])
         .unwrap_err();
     assert_eq!(error, MeshError::TooManyTriangles { line: 5, limit: 1 });
 }
@@ -162,7 +162,7 @@ fn threads_agree_on_one_mesh() {
             .map(|_| {
                 scope.spawn(|| {
                     (1..=20)
-                        .filter(|h| store.insert_obj(obj(*h).as_bytes(), None).unwrap().created)
+                        .filter(|h| store.insert_obj(obj(*h).as_bytes(), &[]).unwrap().created)
                         .count()
                 })
             })

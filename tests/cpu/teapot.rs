@@ -16,7 +16,8 @@ fn folder() -> std::path::PathBuf {
 fn load(name: &str, mtl: Option<&str>) -> Mesh {
     let file = |name: &str| std::fs::read(folder().join(name)).unwrap();
     let mtl = mtl.map(file);
-    obj::read(&file(name), mtl.as_deref(), &Limits::default()).unwrap()
+    let mtls: Vec<&[u8]> = mtl.iter().map(Vec::as_slice).collect();
+    obj::read(&file(name), &mtls, &Limits::default()).unwrap()
 }
 
 /// Triangles of each part (parts hang together by edges), largest first, with the number of open edges.

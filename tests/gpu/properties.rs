@@ -214,7 +214,7 @@ fn resolved(mut value: Value, store: &MeshStore) -> Option<ResolvedScene> {
     let mut meshes: Vec<std::sync::Arc<Mesh>> = Vec::new();
     for object in value["objects"].as_array_mut().unwrap() {
         let text = if object["mesh"] == "box" { BOX } else { SPIKE };
-        let mesh = store.insert_obj(text.as_bytes(), None).unwrap().mesh;
+        let mesh = store.insert_obj(text.as_bytes(), &[]).unwrap().mesh;
         object["mesh"] = json!(mesh.id);
         meshes.push(mesh);
     }

@@ -205,6 +205,15 @@ async fn materials_come_in_a_form() {
     let alone = upload_form(&service, &[("obj", &obj)]).await;
     assert_eq!(alone.status, 201, "{}", alone.text());
     assert_ne!(both.json::<MeshInfo>().id, alone.json::<MeshInfo>().id);
+    // Of several files the first one that has a material counts.
+    let several = [("mtl", "newmtl sea\n"), ("mtl", MTL), ("obj", &obj)];
+    let several = upload_form(&service, &several).await;
+    assert_eq!(several.status, 201, "{}", several.text());
+    assert_eq!(
+        several.json::<MeshInfo>().materials,
+        both.json::<MeshInfo>().materials
+    );
+    assert_ne!(several.json::<MeshInfo>().id, both.json::<MeshInfo>().id);
 }
 
 #[tokio::test]

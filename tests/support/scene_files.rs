@@ -57,7 +57,7 @@ pub(crate) fn mesh(file: &str) -> Arc<Mesh> {
 /// A mesh from the text of an OBJ file.
 pub(crate) fn mesh_of(obj: &[u8]) -> Arc<Mesh> {
     let store = MeshStore::new(&Limits::default());
-    let inserted = store.insert_obj(obj, None).expect("a mesh");
+    let inserted = store.insert_obj(obj, &[]).expect("a mesh");
     inserted.mesh
 }
 

@@ -21,8 +21,8 @@ use crate::cache::{WarmUp, WarmedMap};
 use crate::mesh::{Mesh, MeshInfo};
 
 /// Media types that a mesh is read from.
-const MESH_TYPES: &str = "text/plain, model/obj or application/octet-stream with an OBJ, or multipart/form-data with the \
-                          parts `obj` and, if there are materials, `mtl`";
+const MESH_TYPES: &str = "text/plain, model/obj or application/octet-stream with an OBJ, or multipart/form-data with a \
+                          part `obj` and a part `mtl` for each file of materials";
 
 /// A small example OBJ.
 const EXAMPLE_OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n";
@@ -60,9 +60,10 @@ pub struct MeshForm {
     /// The Wavefront OBJ, in metres.
     #[schema(content_media_type = "model/obj")]
     obj: String,
-    /// The MTL file named in the OBJ; only `Kd` is used.
+    /// The MTL files that the OBJ names, each in a part of this name; only `Kd` is used. If several have a material of the same name,
+    /// that of the first part counts.
     #[schema(content_media_type = "model/mtl")]
-    mtl: Option<String>,
+    mtl: Option<Vec<String>>,
 }
 
 /// Lists the stored meshes.
@@ -88,13 +89,13 @@ pub async fn list(State(state): State<AppState>) -> Json<MeshList> {
     post, path = "/v1/meshes", tag = "meshes",
     params(WarmParameters),
     request_body(
-        description = "A Wavefront OBJ in metres, alone or with its MTL.",
+        description = "A Wavefront OBJ in metres, alone or with its MTL files.",
         content(
             (String = "text/plain", example = json!(EXAMPLE_OBJ)),
             (String = "model/obj", example = json!(EXAMPLE_OBJ)),
             (String = "application/octet-stream", example = json!(EXAMPLE_OBJ)),
             (MeshForm = "multipart/form-data", example = json!({
-                "obj": EXAMPLE_OBJ, "mtl": "newmtl sand\nKd 0.7 0.65 0.5\n"
+                "obj": EXAMPLE_OBJ, "mtl": ["newmtl sand\nKd 0.7 0.65 0.5\n"]
             })),
         )
     ),
@@ -114,7 +115,7 @@ pub async fn upload(
     let files = match media_type.as_deref() {
         Some("text/plain" | "model/obj" | "application/octet-stream") => MeshFiles {
             obj: bytes(request, &state).await?,
-            mtl: None,
+            mtls: Vec::new(),
         },
         Some("multipart/form-data") => read_form(request, &state).await?,
         _ => return Err(unsupported(media_type, MESH_TYPES)),
@@ -122,7 +123,8 @@ pub async fn upload(
     let store = state.clone();
     let inserted = run_blocking(move || {
         let store = store.meshes();
-        Ok(store.insert_obj(&files.obj, files.mtl.as_deref())?)
+        let mtls: Vec<&[u8]> = files.mtls.iter().map(|mtl| &**mtl).collect();
+        Ok(store.insert_obj(&files.obj, &mtls)?)
     })
     .await?;
     let mut uploaded = Uploaded {
@@ -200,7 +202,7 @@ pub async fn forget(
 /// The files of an upload.
 struct MeshFiles {
     obj: Bytes,
-    mtl: Option<Bytes>,
+    mtls: Vec<Bytes>,
 }
 
 async fn read_form(request: Request, state: &AppState) -> Result<MeshFiles, ApiError> {
@@ -209,27 +211,27 @@ async fn read_form(request: Request, state: &AppState) -> Result<MeshFiles, ApiE
     let mut form = Multipart::from_request(request, state)
         .await
         .map_err(|rejection| ApiError::from_multipart_rejection(&rejection))?;
-    let (mut obj, mut mtl) = (None, None);
+    let (mut obj, mut mtls) = (None, Vec::new());
     while let Some(part) = form.next_field().await.map_err(broken)? {
         let name = part.name().unwrap_or_default().to_owned();
-        let target = match name.as_str() {
-            "obj" => &mut obj,
-            "mtl" => &mut mtl,
+        let bytes = part.bytes().await.map_err(broken)?;
+        match name.as_str() {
+            "obj" if obj.is_none() => obj = Some(bytes),
+            "mtl" => mtls.push(bytes),
+            "obj" => {
+                return Err(ApiError::MalformedBody(
+                    "the form has the part `obj` twice; once is accepted".to_owned(),
+                ));
+            }
             _ => {
                 return Err(ApiError::MalformedBody(format!(
                     "the form has a part `{name}`; accepted are `obj` and `mtl`"
                 )));
             }
-        };
-        let twice = target.replace(part.bytes().await.map_err(broken)?);
-        if twice.is_some() {
-            return Err(ApiError::MalformedBody(format!(
-                "the form has the part `{name}` twice; once is accepted"
-            )));
         }
     }
     let obj = obj.ok_or_else(|| {
         ApiError::MalformedBody("the form has no part `obj`; it is needed".to_owned())
     })?;
-    Ok(MeshFiles { obj, mtl })
+    Ok(MeshFiles { obj, mtls })
 }

@@ -41,7 +41,7 @@ pub(super) fn resolved(store: &mut MeshStore, mut value: Value) -> Result<Resolv
     for object in objects.into_iter().flatten() {
         let text = object["mesh"].as_str().unwrap_or_default().to_owned();
         let mesh = store
-            .insert_obj(text.as_bytes(), None)
+            .insert_obj(text.as_bytes(), &[])
             .map_err(|error| Failure::Check(format!("the mesh is refused: {error}")))?
             .mesh;
         object["mesh"] = Value::from(mesh.id.clone());

@@ -88,6 +88,6 @@ impl Shape {
     /// # Errors
     /// What [`obj::read`] refuses; nothing, as a test shows of every shape.
     pub fn mesh(&self) -> Result<Mesh, MeshError> {
-        obj::read(self.obj().as_bytes(), None, &Limits::default())
+        obj::read(self.obj().as_bytes(), &[], &Limits::default())
     }
 }

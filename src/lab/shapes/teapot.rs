@@ -18,7 +18,7 @@ pub(super) const SHAPES: &[Shape] = &[Shape {
 
 fn teapot() -> Outline {
     let mesh =
-        obj::read(TEXT, None, &Limits::default()).expect("a mesh of the repository can be read");
+        obj::read(TEXT, &[], &Limits::default()).expect("a mesh of the repository can be read");
     let mut outline = Outline::default();
     let mut number_of = HashMap::new();
     for triangle in &mesh.triangles {
