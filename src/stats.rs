@@ -32,8 +32,32 @@ pub struct Stats {
     pub accuracy: Option<AccuracyStats>,
     /// How radiance becomes display values.
     pub exposure: ExposureStats,
+    /// The camera of a view, as vision and graphics programs state it; absent for irradiance maps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraStats>,
     /// Everything that was clamped, skipped, sub-sampled or not simulated.
     pub warnings: Vec<Warning>,
+}
+
+/// A camera as matrices, row by row. They multiply column vectors: p_camera = M (x, y, z, 1).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(default)]
+pub struct CameraStats {
+    /// Matrix K, pixels: (u, v, 1) ~ K (X, Y, Z) in OpenCV's camera coordinates. The middle of the first pixel is at (½, ½); for
+    /// functions that count from the middle of the first pixel, as OpenCV's do, subtract ½ from the last column's first two values.
+    /// Absent for an orthographic camera.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(min_items = 3, max_items = 3)]
+    pub k_px: Option<[[f64; 3]; 3]>,
+    /// Scale of an orthographic camera, pixels/m: u = width/2 + scale · X, v = height/2 + scale · Y. Absent for a perspective camera.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pixels_per_m: Option<f64>,
+    /// World to OpenCV's camera coordinates, m: X right, Y down, Z ahead.
+    #[schema(min_items = 4, max_items = 4)]
+    pub world_to_camera_opencv: [[f64; 4]; 4],
+    /// World to OpenGL's camera coordinates, m: X right, Y up, Z backwards.
+    #[schema(min_items = 4, max_items = 4)]
+    pub world_to_camera_opengl: [[f64; 4]; 4],
 }
 
 /// The method that carried the light of a frame.

@@ -5,6 +5,7 @@ struct View {
     right: vec4f,         // times half the picture's width at unit distance (orthographic: in metres)
     up: vec4f,            // times half the picture's height
     forward: vec4f,       // unit
+    middle: vec4f,        // from the eye to the middle of the picture at unit distance along forward
     extinction_per_m: vec4f,
     sky_radiance: vec4f,
     floor_albedo: vec4f,

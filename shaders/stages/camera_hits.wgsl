@@ -23,6 +23,8 @@ const SURFACE_TOLERANCE_M: f32 = 2e-5;
 // Start of the search along a refracted or reflected ray: as far before the found point on the water as that point may lie behind the true
 // surface, so that objects just under the surface are not missed.
 const START_M: f32 = -2.0 * SURFACE_TOLERANCE_M;
+// Depth of a pixel whose ray meets nothing (m).
+const FAR_DEPTH_M: f32 = 1e10;
 
 // MARCH_UNFINISHED if the march ran out of steps before it hit the water or was clear of it.
 var<private> notes: f32;
@@ -37,7 +39,7 @@ fn pixel_ray(x: u32, y: u32) -> Ray {
     let sy = 1.0 - (2.0 * (f32(y) + 0.5 + view.sample_offset.y) / f32(view.height));
     let offset = view.right.xyz * sx + view.up.xyz * sy;
     if view.orthographic == 1u { return Ray(view.eye.xyz + offset, view.forward.xyz); }
-    return Ray(view.eye.xyz, normalize(view.forward.xyz + offset));
+    return Ray(view.eye.xyz, normalize(view.middle.xyz + offset));
 }
 
 // Signed height over the water: > 0 above it.
@@ -192,7 +194,8 @@ fn camera_hits_main(@builtin(global_invocation_id) id: vec3u) {
     let pixel_side = 2.0 * length(view.up.xyz) / f32(view.height);
     let footprint_m = select(0.0, pixel_side * select(pixel.reach_m, 1.0, view.orthographic == 1u), seen);
     points[index] = Point(select(vec3f(0.0), pixel.position, seen), receiver, pixel.seen.normal, footprint_m);
-    visible_depth[index] = pixel.first_m * dot(ray.direction, view.forward.xyz);
+    let depth_m = pixel.first_m * dot(ray.direction, view.forward.xyz);
+    visible_depth[index] = select(depth_m, FAR_DEPTH_M, pixel.first_m >= VERY_FAR_M);
     visible_albedo[index] = vec4f(pixel.seen.albedo, select(0.0, pixel.path_m, seen));
     visible_transport[index] = vec4f(pixel.weight, pixel.sky_weight, pixel.sky_path_m, notes);
 }

@@ -75,7 +75,10 @@ impl SceneFacts {
         };
         let apparent_m = from_eye.length() * (1.0 - below + below / self.water.ior);
         // Perspective stretches the image away from the picture's middle, at most as much as in its corners.
-        let corner = (1.0 + camera.right.length_squared() + camera.up.length_squared()).sqrt();
+        let corner = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]]
+            .map(|[x, y]| (camera.middle + camera.right * x + camera.up * y).length())
+            .into_iter()
+            .fold(1.0, f64::max);
         let cosine = from_eye
             .normalize_or_zero()
             .dot(camera.forward)
@@ -104,7 +107,8 @@ impl SceneFacts {
             } else {
                 p.dot(camera.forward)
             };
-            sign * p.dot(across[axis]) - half[axis] * reach
+            sign * (p.dot(across[axis]) - camera.middle.dot(across[axis]) * reach)
+                - half[axis] * reach
         };
         let all = |outside: &dyn Fn(DVec3) -> bool| corners.iter().all(|&p| outside(p));
         all(&|p| p.dot(camera.forward) < 0.0)

@@ -6,6 +6,7 @@ use super::SceneFacts;
 use super::receivers::FloorMap;
 use super::window::{self, Rect, Region};
 use crate::physics::sky;
+use crate::scene::projection::{Lens, Projection};
 use crate::scene::ranges::DEFAULT_MAP_SIDE;
 use crate::scene::{Camera, LayerName, Output, Receiver, Scene};
 
@@ -33,6 +34,9 @@ pub struct CameraFacts {
     pub eye: DVec3,
     /// Unit viewing direction.
     pub forward: DVec3,
+    /// From the eye to the middle of the picture at unit distance along the viewing direction; `forward` if the principal point is
+    /// there, and for parallel rays.
+    pub middle: DVec3,
     /// From the middle of the picture to its right edge, at unit distance (orthographic: m).
     pub right: DVec3,
     /// From the middle of the picture to its upper edge, likewise.
@@ -149,20 +153,28 @@ impl SceneFacts {
 }
 
 fn camera_facts(camera: &Camera, origin_m: DVec3, width: u32, height: u32) -> CameraFacts {
-    let (eye, target, up) = camera.pose();
-    let forward = (DVec3::from(target) - DVec3::from(eye)).normalize();
-    let right = forward.cross(DVec3::from(up)).normalize();
-    let half_height = match camera {
-        Camera::Perspective(c) => (0.5 * c.vertical_fov_deg.to_radians()).tan(),
-        Camera::Orthographic(c) => 0.5 * c.height_m,
+    let Projection {
+        eye_m,
+        axes: [right, up, forward],
+        lens,
+        ..
+    } = camera.projection([width, height]);
+    let half = [width, height].map(|side| 0.5 * f64::from(side));
+    // Half of the picture at unit distance, and the way from the axis to the picture's middle.
+    let ([half_width, half_height], middle) = match lens {
+        Lens::Perspective { fx, fy, cx, cy } => (
+            [half[0] / fx, half[1] / fy],
+            forward + right * ((half[0] - cx) / fx) - up * ((half[1] - cy) / fy),
+        ),
+        Lens::Orthographic { pixels_per_m } => (half.map(|side| side / pixels_per_m), forward),
     };
-    let aspect = f64::from(width) / f64::from(height);
     CameraFacts {
-        eye: DVec3::from(eye) - origin_m,
+        eye: eye_m - origin_m,
         forward,
-        right: right * (half_height * aspect),
-        up: right.cross(forward) * half_height,
-        orthographic: matches!(camera, Camera::Orthographic(_)),
+        middle,
+        right: right * half_width,
+        up: up * half_height,
+        orthographic: matches!(lens, Lens::Orthographic { .. }),
         width,
         height,
     }

@@ -244,7 +244,7 @@ pub fn visible_floor(facts: &SceneFacts, camera: &CameraFacts) -> Region {
             let (eye, direction) = if camera.orthographic {
                 (camera.eye + offset, camera.forward)
             } else {
-                (camera.eye, (camera.forward + offset).normalize())
+                (camera.eye, (camera.middle + offset).normalize())
             };
             if direction.y >= -1e-3 {
                 if direction.y < 0.05 {

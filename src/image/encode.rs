@@ -23,7 +23,7 @@ pub struct Encoded {
 pub enum EncodeError {
     /// A value is NaN or infinite.
     #[error(
-        "layer {layer}, pixel ({x}, {y}), value {channel} of the pixel is {value}; only finite numbers can be written{exception}"
+        "layer {layer}, pixel ({x}, {y}), value {channel} of the pixel is {value}; only finite numbers can be written"
     )]
     NonFinite {
         /// The layer, by its name in a scene.
@@ -36,8 +36,6 @@ pub enum EncodeError {
         channel: usize,
         /// The value.
         value: f32,
-        /// What else is accepted, as the end of the sentence; may be empty.
-        exception: &'static str,
     },
     /// A layer has the wrong number of values or channels.
     #[error(
@@ -105,7 +103,7 @@ pub enum EncodeError {
 ///
 /// PNG: layer radiance (or the irradiance of a map), exposed by `frame.stats.exposure.scale`, tone-mapped, sRGB; the
 /// exposure in stops is part of that scale and `encoding.exposure_ev` is not applied again. EXR: every layer, linear and
-/// unexposed. A frame whose only layer is irradiance is an irradiance map.
+/// unexposed. Both contain the scene if the frame does.
 ///
 /// # Errors
 /// See [`EncodeError`]; nothing non-finite is ever written.

@@ -9,18 +9,17 @@ use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding as Blocks, Image, ImageAttributes,
     IntegerBounds, Layer as Part, LayerAttributes, SampleType, SmallVec, Text, Vec2, WritableImage,
 };
+use glam::DMat4;
 use half::f16;
 
 use crate::frame::{Frame, Layer};
-use crate::scene::{Encoding, ExrPixel, LayerName};
+use crate::scene::{Encoding, ExrPixel};
 use crate::stats::Warning;
 
 use super::encode::{EncodeError, Encoded};
 use super::exr_header::sort_attributes;
-use super::layers::{
-    FAR_DEPTH_M, IRRADIANCE_MAP, LayerFormat, check, format_of, is_irradiance_map,
-};
-use super::metadata::{Metadata, SCENE_HASH_KEY, STATS_KEY};
+use super::layers::{check, format_in};
+use super::metadata::{Metadata, SCENE_HASH_KEY, SCENE_KEY, STATS_KEY, ascii};
 
 /// Media type of EXR.
 pub const MEDIA_TYPE: &str = "image/x-exr";
@@ -50,7 +49,7 @@ pub fn encode(
     let mut holds = Vec::new();
     for (name, layer) in &frame.layers {
         check(frame, *name, layer)?;
-        let format = exr_format(frame, *name);
+        let format = format_in(frame, *name);
         let is_half = format.follows_exr_pixel && encoding.exr_pixel == ExrPixel::Half;
         if is_half {
             warnings.extend(half_warnings(format.word, layer));
@@ -77,18 +76,22 @@ pub fn encode(
     let mut shared = ImageAttributes::new(IntegerBounds::from_dimensions(size));
     shared.chromaticities = Some(REC_709);
     let stats = metadata.stats_json(&warnings);
-    for (key, value) in [
-        (SCENE_HASH_KEY, metadata.scene_hash.as_str()),
-        (STATS_KEY, stats.as_str()),
-        ("colorInteropID", COLOR_INTEROP_ID),
-    ] {
+    let scene = frame.scene.as_deref().map(ascii);
+    let texts = [
+        (SCENE_HASH_KEY, Some(metadata.scene_hash.as_str())),
+        (STATS_KEY, Some(stats.as_str())),
+        (SCENE_KEY, scene.as_deref()),
+        ("colorInteropID", Some(COLOR_INTEROP_ID)),
+    ];
+    for (key, value) in texts {
+        let Some(value) = value else { continue };
         let value = AttributeValue::Text(text(key, value)?);
         shared.other.insert(text(key, key)?, value);
     }
     let own = LayerAttributes {
         software_name: Some(text("software", &metadata.software())?),
         comments: Some(text("comments", &format!("linear; {}", holds.join("; ")))?),
-        ..LayerAttributes::default()
+        ..camera_attributes(frame)
     };
 
     let part = Part::new(
@@ -110,11 +113,21 @@ pub fn encode(
     })
 }
 
-fn exr_format(frame: &Frame, name: LayerName) -> LayerFormat {
-    if is_irradiance_map(frame) {
-        IRRADIANCE_MAP
-    } else {
-        format_of(name)
+/// The camera, as the OpenEXR standard attributes have it: camera space is left-handed with z along the view, and matrices multiply
+/// row vectors.
+fn camera_attributes(frame: &Frame) -> LayerAttributes {
+    let Some(projection) = &frame.projection else {
+        return LayerAttributes::default();
+    };
+    // The columns of a matrix for column vectors are the rows of that for row vectors.
+    let for_rows = |matrix: DMat4| Some(matrix.to_cols_array().map(|v| v as f32));
+    let angles = projection.field_of_view_deg();
+    LayerAttributes {
+        world_to_camera: for_rows(projection.world_to_camera()),
+        world_to_normalized_device: for_rows(projection.world_to_ndc()),
+        horizontal_field_of_view: angles.map(|[x, _]| x as f32),
+        vertical_field_of_view: angles.map(|[_, y]| y as f32),
+        ..LayerAttributes::default()
     }
 }
 
@@ -197,15 +210,7 @@ impl<'s, 'a: 's> WritableSamples<'s> for Plane<'a> {
 impl SamplesWriter for &Plane<'_> {
     fn extract_line(&self, line: LineRefMut<'_>) {
         let first = line.location.position.y() * self.width + line.location.position.x();
-        let value = |i: usize| {
-            let value = self.layer.data[(first + i) * self.layer.channels + self.index];
-            // Only depths can be infinite here, see `layers::check`.
-            if value == f32::INFINITY {
-                FAR_DEPTH_M
-            } else {
-                value
-            }
-        };
+        let value = |i: usize| self.layer.data[(first + i) * self.layer.channels + self.index];
         if self.is_half {
             line.write_samples(|i| to_half(value(i)))
         } else {

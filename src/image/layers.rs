@@ -1,12 +1,9 @@
 //! Names and contents of the layers in a file, and the check whether a layer can be written.
 
-use crate::frame::{Frame, Layer};
+use crate::frame::{Frame, FrameKind, Layer};
 use crate::scene::LayerName;
 
 use super::encode::EncodeError;
-
-/// Depth written for pixels whose ray meets nothing, m; a frame holds +∞ there.
-pub const FAR_DEPTH_M: f32 = 1e10;
 
 /// How a layer appears in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,12 +19,20 @@ pub struct LayerFormat {
 }
 
 /// Channels of an irradiance map in EXR: the root, so that every viewer shows it.
-pub const IRRADIANCE_MAP: LayerFormat = LayerFormat {
+const IRRADIANCE_MAP: LayerFormat = LayerFormat {
     word: "irradiance",
     exr_channels: &["R", "G", "B"],
     follows_exr_pixel: false,
     holds: "R G B: irradiance, W/m2",
 };
+
+/// How the layer `name` of `frame` appears in a file.
+pub fn format_in(frame: &Frame, name: LayerName) -> LayerFormat {
+    match frame.kind {
+        FrameKind::IrradianceMap => IRRADIANCE_MAP,
+        FrameKind::View => format_of(name),
+    }
+}
 
 /// How `name` appears in a file of a view.
 pub fn format_of(name: LayerName) -> LayerFormat {
@@ -42,44 +47,45 @@ pub fn format_of(name: LayerName) -> LayerFormat {
             word: "depth",
             exr_channels: &["Z"],
             follows_exr_pixel: false,
-            holds: "Z: distance along the viewing axis, m, 1e10 where nothing is seen",
+            holds: "Z: distance along the viewing axis (not the ray) to the first surface, the water's included, m, 1e10 where the ray meets nothing",
+        },
+        LayerName::SeenDepth => LayerFormat {
+            word: "seen_depth",
+            exr_channels: &["seen.Z"],
+            follows_exr_pixel: false,
+            holds: "seen.Z: distance along the viewing axis to P, the surface seen (it may lie behind the water), m, 1e10 where none is seen",
         },
         LayerName::Normal => LayerFormat {
             word: "normal",
             exr_channels: &["N.X", "N.Y", "N.Z"],
             follows_exr_pixel: false,
-            holds: "N: world normal",
+            holds: "N: world normal of the surface seen, 0 where none is",
         },
         LayerName::Position => LayerFormat {
             word: "position",
             exr_channels: &["P.X", "P.Y", "P.Z"],
             follows_exr_pixel: false,
-            holds: "P: world position, m",
+            holds: "P: world position of the surface seen, m, 0 where none is",
         },
         LayerName::Albedo => LayerFormat {
             word: "albedo",
             exr_channels: &["albedo.R", "albedo.G", "albedo.B"],
             follows_exr_pixel: true,
-            holds: "albedo: diffuse reflectance",
+            holds: "albedo: diffuse reflectance of the surface seen, 0 where none is",
         },
         LayerName::Irradiance => LayerFormat {
             word: "irradiance",
             exr_channels: &["irradiance.R", "irradiance.G", "irradiance.B"],
             follows_exr_pixel: false,
-            holds: "irradiance: W/m2",
+            holds: "irradiance: on the surface seen, W/m2, 0 where none is",
         },
     }
-}
-
-/// Whether the frame is an irradiance map: it holds irradiance and nothing else.
-pub fn is_irradiance_map(frame: &Frame) -> bool {
-    frame.layers.keys().eq([&LayerName::Irradiance])
 }
 
 /// Checks the shape of a layer and that all its numbers can be written.
 ///
 /// # Errors
-/// [`EncodeError::Shape`], or [`EncodeError::NonFinite`] for the first NaN or infinity in row order; +∞ is a legal depth.
+/// [`EncodeError::Shape`], or [`EncodeError::NonFinite`] for the first NaN or infinity in row order.
 pub fn check(frame: &Frame, name: LayerName, layer: &Layer) -> Result<(), EncodeError> {
     let format = format_of(name);
     let wanted_channels = format.exr_channels.len();
@@ -94,9 +100,7 @@ pub fn check(frame: &Frame, name: LayerName, layer: &Layer) -> Result<(), Encode
             wanted_channels,
         });
     }
-    let is_depth = name == LayerName::Depth;
-    let writable = |v: &f32| v.is_finite() || (is_depth && *v == f32::INFINITY);
-    match layer.data.iter().position(|v| !writable(v)) {
+    match layer.data.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
         Some(index) => {
             let pixel = (index / wanted_channels) as u64;
@@ -107,11 +111,6 @@ pub fn check(frame: &Frame, name: LayerName, layer: &Layer) -> Result<(), Encode
                 y: (pixel / width) as u32,
                 channel: index % wanted_channels,
                 value: layer.data[index],
-                exception: if is_depth {
-                    ", and +inf where nothing is seen"
-                } else {
-                    ""
-                },
             })
         }
     }

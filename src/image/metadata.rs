@@ -10,6 +10,9 @@ pub const SCENE_HASH_KEY: &str = "caustica:scene_hash";
 /// Key of the statistics, compact JSON in ASCII with sorted keys, in PNG (iTXt) and EXR (string attribute).
 pub const STATS_KEY: &str = "caustica:stats";
 
+/// Key of the scene as JSON with every default written out, in PNG (iTXt, UTF-8) and EXR (string attribute, ASCII).
+pub const SCENE_KEY: &str = "caustica:scene";
+
 /// Prefix of the passes that fill the level-map cache: whether they run depends on earlier frames.
 pub const CACHED_PASS_PREFIX: &str = "level_map";
 
@@ -25,7 +28,7 @@ pub struct Metadata {
     pub version: String,
     /// The adapter it ran on.
     pub adapter: AdapterStats,
-    /// Passes, energy, exposure, planned bytes, warnings: a JSON object.
+    /// Passes, energy, exposure, camera, planned bytes, warnings: a JSON object.
     pub facts: Value,
 }
 
@@ -54,6 +57,9 @@ impl Metadata {
             "exposure": stats.exposure,
             "warnings": stats.warnings,
         });
+        if let Some(camera) = &stats.camera {
+            facts["camera"] = json!(camera);
+        }
         let level_maps = &stats.memory.level_maps;
         if level_maps.hits + level_maps.misses == 0 {
             facts["planned_peak_bytes"] = json!(stats.memory.planned_peak_bytes);
@@ -88,7 +94,7 @@ impl Metadata {
 }
 
 /// Escapes everything outside ASCII (in JSON it occurs only within strings), because EXR readers disagree about other encodings.
-fn ascii(json: &str) -> String {
+pub(super) fn ascii(json: &str) -> String {
     let mut out = String::with_capacity(json.len());
     for character in json.chars() {
         if character.is_ascii() {

@@ -74,6 +74,18 @@ pub enum MeshError {
         /// Most triangles of one mesh.
         limit: usize,
     },
+    /// A concave polygon with too many corners.
+    #[error(
+        "OBJ line {line}: the polygon is concave and has {corners} corners; accepted are {limit}; triangulate it"
+    )]
+    PolygonTooLarge {
+        /// The line of the face.
+        line: usize,
+        /// Its corners.
+        corners: usize,
+        /// Most corners of a concave polygon.
+        limit: usize,
+    },
     /// Every triangle is degenerate.
     #[error(
         "none of the {triangles} triangles has an area: their corners coincide or lie on a line; expected at least one \

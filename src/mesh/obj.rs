@@ -49,7 +49,7 @@ pub fn material_libraries(obj: &[u8]) -> Vec<String> {
 pub fn read(obj: &[u8], mtls: &[&[u8]], limits: &Limits) -> Result<Mesh, MeshError> {
     let mut scan = scan::scan(obj, limits.max_triangles.min(MAX_TRIANGLES))?;
     let mtl_scan = mtl::scan(mtls);
-    let text = scan.rewritten(|name| mtl_scan.place_of(name));
+    let text = scan.rewritten(|name| mtl_scan.place_of(name))?;
     let mut warnings = std::mem::take(&mut scan.warnings);
     material_warnings(
         &scan,

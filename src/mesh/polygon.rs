@@ -8,6 +8,9 @@ use glam::{DVec2, DVec3};
 /// How far the triangles' area may be from the polygon's, relative to it, before the polygon counts as one that crosses itself.
 const AREA_TOLERANCE: f64 = 1e-6;
 
+/// Most corners of a polygon whose ears are cut: the time grows with their square in the worst case, and is 3 s here.
+pub(super) const MAX_CORNERS: usize = 100_000;
+
 /// Cuts polygons into triangles; keeps its memory between polygons.
 pub(super) struct Cutter {
     earcut: Earcut<f64>,
@@ -22,6 +25,8 @@ pub(super) enum Cut {
     Whole,
     /// The polygon crosses itself or is far from flat: no set of triangles covers exactly it.
     Crossed,
+    /// The polygon has more than [`MAX_CORNERS`] corners, and a fan does not cover it: it was not cut.
+    TooLarge,
 }
 
 impl Cutter {
@@ -43,6 +48,9 @@ impl Cutter {
         if fan_faces_one_way(corners) {
             triangles.extend(fan());
             return Cut::Whole;
+        }
+        if corners.len() > MAX_CORNERS {
+            return Cut::TooLarge;
         }
         let normal = newell_normal(corners);
         let Some(axis) = normal.try_normalize() else {

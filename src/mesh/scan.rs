@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use glam::DVec3;
 
 use super::MeshError;
-use super::polygon::{Cut, Cutter};
+use super::polygon::{Cut, Cutter, MAX_CORNERS};
 use super::text::{Lines, Skipped, corner_syntax, keyword_of, number, shorten, syntax, words};
 use crate::stats::Warning;
 
@@ -62,7 +62,13 @@ struct Corner {
 impl Scan {
     /// The OBJ as the library reads it: `v`, `vn`, `usemtl`, and triangles `f position//normal …`. `material_of` gives the number that
     /// replaces a material's name. Polygons that cross themselves are counted in `warnings`.
-    pub(super) fn rewritten(&mut self, material_of: impl Fn(&str) -> Option<usize>) -> String {
+    ///
+    /// # Errors
+    /// [`MeshError::PolygonTooLarge`].
+    pub(super) fn rewritten(
+        &mut self,
+        material_of: impl Fn(&str) -> Option<usize>,
+    ) -> Result<String, MeshError> {
         let mut text = String::with_capacity(
             self.positions.len() * 32 + self.normal_text.len() + self.corners.len() * 12,
         );
@@ -96,8 +102,16 @@ impl Scan {
                     .iter()
                     .map(|corner| self.positions[corner.position as usize - 1]),
             );
-            if cutter.cut(&points, &mut triangles) == Cut::Crossed {
-                crossed.add(|| format!("on line {}", face.line));
+            match cutter.cut(&points, &mut triangles) {
+                Cut::Whole => {}
+                Cut::Crossed => crossed.add(|| format!("on line {}", face.line)),
+                Cut::TooLarge => {
+                    return Err(MeshError::PolygonTooLarge {
+                        line: face.line,
+                        corners: face.count,
+                        limit: MAX_CORNERS,
+                    });
+                }
             }
             for triangle in &triangles {
                 text.push('f');
@@ -112,7 +126,7 @@ impl Scan {
             "mesh_crossed_polygons",
             "polygons cross themselves or are far from flat; their triangles cover another area. Triangulate the mesh before sending it.",
         ));
-        text
+        Ok(text)
     }
 }
 

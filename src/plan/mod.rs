@@ -175,7 +175,7 @@ pub fn awaited_layers(facts: &SceneFacts) -> BTreeSet<&'static Slot> {
         .map(|layer| match layer {
             LayerName::Radiance => &RADIANCE,
             LayerName::Depth => &VISIBLE_DEPTH,
-            LayerName::Normal | LayerName::Position => &POINTS,
+            LayerName::SeenDepth | LayerName::Normal | LayerName::Position => &POINTS,
             LayerName::Albedo => &VISIBLE_ALBEDO,
             LayerName::Irradiance => &POINT_IRRADIANCE,
         })

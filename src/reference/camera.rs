@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::ReferenceError;
 use super::place::Place;
 use crate::physics::refraction::{normal_from_slope, reflect_direction, refract_direction};
-use crate::scene::{Camera, Output, ResolvedScene};
+use crate::scene::{Camera, DEFAULT_FIELD_OF_VIEW_DEG, Output, ResolvedScene};
 
 /// Above the water by more than this counts as dry, m: rounding of a floor that lies in the water's plane.
 const DRY_M: f64 = 1e-9;
@@ -56,6 +56,8 @@ pub(super) struct Picture {
     eye_m: DVec3,
     /// Unit viewing direction.
     forward: DVec3,
+    /// Where the axis meets the picture, from its middle, in halves of its width and height (right and up are positive).
+    axis_at: DVec2,
     /// From the middle to the right edge of the picture, at unit distance (for parallel rays, m).
     right: DVec3,
     /// From the middle to the upper edge.
@@ -77,17 +79,31 @@ impl Picture {
         let (eye_m, target_m) = (DVec3::from(eye_m), DVec3::from(target_m));
         let forward = (target_m - eye_m).normalize();
         let right = forward.cross(DVec3::from(up)).normalize();
-        let (half_height, parallel) = match camera {
-            Camera::Perspective(c) => ((0.5 * c.vertical_fov_deg.to_radians()).tan(), false),
-            Camera::Orthographic(c) => (0.5 * c.height_m, true),
-        };
         let pixels = DVec2::new(f64::from(output.width), f64::from(output.height));
+        let square =
+            |half_height: f64| DVec2::new(half_height * (pixels.x / pixels.y), half_height);
+        let mut axis_at = DVec2::ZERO;
+        let (half, parallel) = match camera {
+            Camera::Perspective(c) => match (c.intrinsics, c.vertical_fov_deg) {
+                (Some(lens), _) => {
+                    let center = DVec2::new(lens.cx, lens.cy);
+                    axis_at = (2.0 * center / pixels - 1.0) * DVec2::new(1.0, -1.0);
+                    (0.5 * pixels / DVec2::new(lens.fx, lens.fy), false)
+                }
+                (None, degrees) => {
+                    let degrees = degrees.unwrap_or(DEFAULT_FIELD_OF_VIEW_DEG);
+                    (square((0.5 * degrees.to_radians()).tan()), false)
+                }
+            },
+            Camera::Orthographic(c) => (square(0.5 * c.height_m), true),
+        };
         Ok(Self {
             target_m,
             eye_m,
             forward,
-            right: right * (half_height * (pixels.x / pixels.y)),
-            up: right.cross(forward) * half_height,
+            axis_at,
+            right: right * half.x,
+            up: right.cross(forward) * half.y,
             parallel,
             pixels,
         })
@@ -154,8 +170,8 @@ impl<'a> Viewer<'a> {
     /// The ray through `at`, in pixels from the upper left corner.
     fn pixel_ray(&self, at: DVec2) -> Ray {
         let picture = self.picture;
-        let right = 2.0 * at.x / picture.pixels.x - 1.0;
-        let up = 1.0 - 2.0 * at.y / picture.pixels.y;
+        let right = 2.0 * at.x / picture.pixels.x - 1.0 - picture.axis_at.x;
+        let up = 1.0 - 2.0 * at.y / picture.pixels.y - picture.axis_at.y;
         let offset = picture.right * right + picture.up * up;
         if picture.parallel {
             Ray {

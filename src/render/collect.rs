@@ -10,7 +10,7 @@ use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
 use crate::facts::unfollowed;
 use crate::facts::warnings::{SCATTERING_NOT_FOLLOWED, WAVES_UNDERSAMPLED};
-use crate::frame::Layer;
+use crate::frame::{FAR_DEPTH_M, Layer};
 use crate::plan;
 use crate::scene::{LayerName, Receiver};
 use crate::stages::camera_hits::{MARCH_UNFINISHED, VISIBLE_ALBEDO, VISIBLE_DEPTH};
@@ -23,6 +23,9 @@ use crate::stats::{EnergyAccount, PlaneStats, Warning};
 
 /// Bytes of one light's energy account.
 pub(super) const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
+
+/// Widest step of single precision that world positions may have without a warning, m.
+const COARSE_STEP_M: f32 = 1e-3;
 
 /// Largest closure at which a method counts as conserving energy.
 const CLOSED: f64 = 1e-5;
@@ -334,7 +337,7 @@ impl<'a> PointLayers<'a> {
             .map(|&name| {
                 let channels = match name {
                     LayerName::Radiance => 4,
-                    LayerName::Depth => 1,
+                    LayerName::Depth | LayerName::SeenDepth => 1,
                     _ => 3,
                 };
                 (
@@ -385,7 +388,19 @@ impl<'a> PointLayers<'a> {
                 [v[0], 0.0, 0.0, 0.0]
             });
         } else if *source == POINTS {
-            // Position, receiver, normal, footprint.
+            // Position, receiver, normal, footprint. Without a receiver, no surface is seen.
+            if let Some(camera) = &self.facts.output.camera {
+                fill(layers.get_mut(&LayerName::SeenDepth), &|v| {
+                    let local = DVec3::new(f64::from(v[0]), f64::from(v[1]), f64::from(v[2]));
+                    let depth_m = (local - camera.eye).dot(camera.forward) as f32;
+                    [
+                        if v[3] == -1.0 { FAR_DEPTH_M } else { depth_m },
+                        0.0,
+                        0.0,
+                        0.0,
+                    ]
+                });
+            }
             fill(layers.get_mut(&LayerName::Normal), &|v| three(&v[4..]));
             fill(layers.get_mut(&LayerName::Position), &|v| {
                 if v[3] == -1.0 {
@@ -424,9 +439,31 @@ impl<'a> PointLayers<'a> {
             "pixels_along_water",
             "have camera rays at such a grazing angle to the waves that the search for their hit on the water ran out of steps; they may show a wrong point of the water",
         );
-        let warnings = outside.into_iter().chain(unfinished).collect();
+        let coarse = self
+            .layers
+            .get(&LayerName::Position)
+            .and_then(coarse_positions);
+        let warnings = outside
+            .into_iter()
+            .chain(unfinished)
+            .chain(coarse)
+            .collect();
         Ok((self.layers, warnings))
     }
+}
+
+/// The warning that world positions are too far from the world's origin for single precision.
+fn coarse_positions(positions: &Layer) -> Option<Warning> {
+    let farthest_m = positions.data.iter().fold(0.0, |a: f32, b| a.max(b.abs()));
+    let step_m = farthest_m.next_up() - farthest_m;
+    (step_m > COARSE_STEP_M).then(|| {
+        Warning::new(
+            "positions_coarse",
+            format!(
+                "layer position has steps of {step_m} m, because it is single precision and reaches {farthest_m:.0} m from the world's origin; the picture itself is exact there, and so is seen_depth, which with the camera in stats gives the position"
+            ),
+        )
+    })
 }
 
 fn check_finite(name: LayerName, layer: &Layer, width: u32) -> Result<(), RenderError> {

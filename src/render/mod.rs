@@ -22,7 +22,7 @@ use crate::calibration::Calibration;
 use crate::config::RenderConfig;
 use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameKind};
 use crate::gpu::shader::ShaderSources;
 use crate::gpu::timing::Timing;
 use crate::gpu::uniforms::Uniforms;
@@ -30,13 +30,14 @@ use crate::gpu::{BindGroups, BufferPool, GpuContext, GpuError, KernelCache};
 use crate::graph::{PlanError, Scope};
 use crate::methods;
 use crate::plan::{self, Cached, FramePlan, Plan, Wanted};
-use crate::scene::{ResolvedScene, SceneError};
+use crate::scene::projection::{Lens, Projection, rows};
+use crate::scene::{Output, ResolvedScene, SceneError};
 use crate::stages::Pass;
 use crate::stages::objects::GEOMETRY;
 use crate::stages::points::Point;
 use crate::stats::{
-    AccuracyStats, AdapterStats, CacheStats, ExposureStats, MemoryStats, MethodStats, PassStats,
-    Stats, TimeStats, Warning,
+    AccuracyStats, AdapterStats, CacheStats, CameraStats, ExposureStats, MemoryStats, MethodStats,
+    PassStats, Stats, TimeStats, Warning,
 };
 
 pub use prepared::Prepared;
@@ -262,6 +263,14 @@ impl Renderer {
         let plan = plan.report;
         // Some GPU work overlaps with recording, so a pass may take longer than the host waits: the limit is the whole run.
         let gpu_times = self.timing.collect(&self.gpu, ms_since(ran))?;
+        let projection = projection(resolved);
+        let kind = match &resolved.scene.output {
+            Output::View(_) => FrameKind::View,
+            Output::IrradianceMap(_) => FrameKind::IrradianceMap,
+        };
+        let is_embedded = resolved.scene.output.encoding().embed_scene;
+        // As requested, like the hash: `resolved` may have chosen dials.
+        let scene = is_embedded.then(|| prepared.resolved().canonical_json());
         let mut stats = Stats {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scene_hash: prepared.scene_hash().to_owned(),
@@ -300,6 +309,7 @@ impl Renderer {
             planes: run.planes,
             accuracy: run.accuracy,
             exposure: exposure(facts, resolved),
+            camera: projection.as_ref().map(camera_stats),
             warnings: plan.warnings,
         };
         let was_measured = !stats.energy.is_empty();
@@ -315,10 +325,13 @@ impl Renderer {
         }
         stats.time_ms.total = prepared.took_ms() + ms_since(started);
         Ok(Frame {
+            kind,
             width: run.width,
             height: run.height,
             layers: run.layers,
+            projection,
             stats,
+            scene,
         })
     }
 
@@ -621,6 +634,26 @@ fn cache_change(before: &CacheStats, after: &CacheStats) -> CacheStats {
         misses: after.misses - before.misses,
         evictions: after.evictions - before.evictions,
         ..after.clone()
+    }
+}
+
+/// The camera of a view.
+fn projection(resolved: &ResolvedScene) -> Option<Projection> {
+    match (&resolved.scene.output, &resolved.scene.camera) {
+        (Output::View(view), Some(camera)) => Some(camera.projection([view.width, view.height])),
+        _ => None,
+    }
+}
+
+fn camera_stats(projection: &Projection) -> CameraStats {
+    CameraStats {
+        k_px: projection.k_px(),
+        pixels_per_m: match projection.lens {
+            Lens::Orthographic { pixels_per_m } => Some(pixels_per_m),
+            Lens::Perspective { .. } => None,
+        },
+        world_to_camera_opencv: rows(projection.world_to_camera_opencv()),
+        world_to_camera_opengl: rows(projection.world_to_camera_opengl()),
     }
 }
 

@@ -20,9 +20,17 @@ pub(super) const MAX_ISSUES: usize = 100;
 ///
 /// # Errors
 ///
-/// Text that is empty, longer than [`MAX_JSON_BYTES`] or not JSON; numbers beyond f64; nesting deeper than 127 levels; text after
+/// Text that is empty, in another encoding than UTF-8, longer than [`MAX_JSON_BYTES`] or not JSON; numbers beyond f64; nesting deeper than 127 levels; text after
 /// the document; and duplicate keys in an object (all of them are listed).
 pub fn read(bytes: &[u8]) -> Result<Value, SceneError> {
+    // Some editors begin UTF-8 with a byte order mark, which a reader may ignore (RFC 8259, 8.1).
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    if let [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [_, 0, ..] | [0, ..] = bytes {
+        let accepted = "JSON in UTF-8 (RFC 8259); in Windows PowerShell, `Out-File -Encoding utf8` instead of `>`";
+        return Err(Issue::invalid("", "the text is UTF-16 or UTF-32", accepted)
+            .of_kind(IssueKind::Syntax)
+            .into());
+    }
     if bytes.len() > MAX_JSON_BYTES {
         let detail = format!("the text has {} bytes", bytes.len());
         let accepted = format!("at most {MAX_JSON_BYTES} bytes");

@@ -4,6 +4,7 @@
 //! - `json` reads text, `strict` reads values, `parse` puts the two together;
 //! - `ranges`, `validate`, `validate_output`: which values are refused;
 //! - `overrides`: single fields replaced from outside, as by command-line flags;
+//! - `projection`: a camera as matrices;
 //! - `resolve`: mesh ids become meshes.
 //!
 //! The list of methods is known to `methods` only, which therefore has a `resolve` of its own: the CLI, the HTTP service and the
@@ -20,6 +21,7 @@ pub mod names;
 pub mod overrides;
 pub mod parse;
 pub mod pointer;
+pub mod projection;
 pub mod quality;
 pub mod ranges;
 pub mod resolve;

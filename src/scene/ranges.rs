@@ -47,8 +47,9 @@ pub(super) fn number(value: f64) -> String {
 
 /// `time_s`.
 pub const TIME: Range = Range::new(-1e12, 1e12, "s");
-/// Positions, translations, corners and the water level.
-pub const COORDINATE: Range = Range::new(-1e6, 1e6, "m");
+/// Positions, translations, corners and the water level: enough for map projections (UTM reaches 10⁷ m, Web Mercator 2·10⁷ m) and
+/// earth-centred coordinates. Steps of f64 are 1.5·10⁻⁸ m there.
+pub const COORDINATE: Range = Range::new(-1e8, 1e8, "m");
 /// `floor.size_m`, the height of an orthographic picture.
 pub const EXTENT: Range = Range::new(1e-6, 1e6, "m");
 /// Angles that may exceed a full turn.
@@ -81,6 +82,12 @@ pub const SCALE: Range = Range::new(1e-6, 1e6, "");
 pub const UP: Range = Range::new(-1e6, 1e6, "");
 /// `vertical_fov_deg`.
 pub const FIELD_OF_VIEW: Range = Range::new(0.1, 179.0, "degrees");
+/// `fx` and `fy` of `intrinsics`.
+pub const FOCAL_LENGTH: Range = Range::new(1e-3, 1e8, "pixels");
+/// `cx` and `cy` of `intrinsics`.
+pub const PRINCIPAL_POINT: Range = Range::new(-1e6, 1e6, "pixels");
+/// Largest angle between the axis and an edge of the picture, degrees: half of the largest field of view.
+pub const MAX_OFF_AXIS_DEG: f64 = 89.5;
 /// `exposure_ev`.
 pub const EXPOSURE: Range = Range::new(-40.0, 40.0, "stops");
 

@@ -17,10 +17,17 @@ pub struct ResolvedScene {
 }
 
 impl ResolvedScene {
-    /// `blake3:…` of the canonical JSON of the scene, in which meshes are named by their content ids.
+    /// The scene as JSON with every default written out; meshes are named by their content ids.
+    pub fn canonical_json(&self) -> String {
+        serde_json::to_string(&self.scene).expect("a scene always serialises")
+    }
+
+    /// `blake3:…` of [`Self::canonical_json`].
     pub fn hash(&self) -> String {
-        let canonical = serde_json::to_vec(&self.scene).expect("a scene always serialises");
-        format!("blake3:{}", blake3::hash(&canonical).to_hex())
+        format!(
+            "blake3:{}",
+            blake3::hash(self.canonical_json().as_bytes()).to_hex()
+        )
     }
 }
 

@@ -48,7 +48,7 @@ pub struct Scene {
 pub struct Water {
     /// Wave components, added up. Default: none, flat water.
     pub waves: Vec<Wave>,
-    /// Height of the water at rest, m, −10⁶ … 10⁶. Default 0.
+    /// Height of the water at rest, m, −10⁸ … 10⁸. Default 0.
     pub level_m: f64,
     /// Index of refraction relative to air, 1 … 4. Default 1.333.
     pub ior: f64,
@@ -133,7 +133,7 @@ pub struct Floor {
     /// Extent along x and z, m, 10⁻⁶ … 10⁶.
     #[schema(min_items = 2, max_items = 2)]
     pub size_m: [f64; 2],
-    /// Centre (x, z), m, −10⁶ … 10⁶. Default (0, 0).
+    /// Centre (x, z), m, −10⁸ … 10⁸. Default (0, 0).
     #[serde(default)]
     #[schema(min_items = 2, max_items = 2)]
     pub center_m: [f64; 2],
@@ -197,7 +197,7 @@ pub struct Sun {
 pub struct PointLight {
     /// Always `point`.
     pub kind: PointKind,
-    /// Position, m, each −10⁶ … 10⁶. The waves at `time_s` decide whether it is above or under the water. Of a light under the
+    /// Position, m, each −10⁸ … 10⁸. The waves at `time_s` decide whether it is above or under the water. Of a light under the
     /// water, the light that goes up to the surface is not followed.
     #[schema(min_items = 3, max_items = 3)]
     pub position_m: [f64; 3],
@@ -223,7 +223,7 @@ pub struct Sky {
 pub struct Object {
     /// Mesh id (`blake3:…`) from `POST /v1/meshes`; in a scene file also the path of an OBJ file relative to the scene file.
     pub mesh: String,
-    /// Translation, m, −10⁶ … 10⁶. Default (0, 0, 0).
+    /// Translation, m, −10⁸ … 10⁸. Default (0, 0, 0).
     #[serde(default)]
     #[schema(min_items = 3, max_items = 3)]
     pub translation_m: [f64; 3],
@@ -304,7 +304,7 @@ impl<'de> Deserialize<'de> for Camera {
             &["perspective", "orthographic"],
             |kind, value| match kind {
                 "orthographic" => inner(value).map(Self::Orthographic),
-                _ => inner(value).map(Self::Perspective),
+                _ => inner(value).map(|camera| Self::Perspective(with_field_of_view(camera))),
             },
         )
     }
@@ -320,26 +320,62 @@ impl Camera {
     }
 }
 
-/// A pinhole camera with square pixels. The picture's aspect ratio follows from width and height.
+/// Gives a camera without `intrinsics` the default field of view.
+fn with_field_of_view(mut camera: PerspectiveCamera) -> PerspectiveCamera {
+    if camera.intrinsics.is_none() {
+        camera
+            .vertical_fov_deg
+            .get_or_insert(DEFAULT_FIELD_OF_VIEW_DEG);
+    }
+    camera
+}
+
+/// Full vertical field of view of a camera that states none, degrees.
+pub const DEFAULT_FIELD_OF_VIEW_DEG: f64 = 45.0;
+
+/// A pinhole camera. Its lens is given by `vertical_fov_deg` (square pixels, the target in the middle of the picture) or by
+/// `intrinsics`. The picture's aspect ratio follows from width and height.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PerspectiveCamera {
     /// Always `perspective`; may be omitted.
     #[serde(default)]
     pub kind: PerspectiveKind,
-    /// Position of the eye, m, −10⁶ … 10⁶.
+    /// Position of the eye, m, −10⁸ … 10⁸.
     #[schema(min_items = 3, max_items = 3)]
     pub position_m: [f64; 3],
-    /// The point in the middle of the picture, m, −10⁶ … 10⁶; at least 10⁻⁶ m from `position_m`.
+    /// A point on the viewing axis, m, −10⁸ … 10⁸; at least 10⁻⁶ m from `position_m`. It is in the middle of the picture, or with
+    /// `intrinsics` at (`cx`, `cy`).
     #[schema(min_items = 3, max_items = 3)]
     pub target_m: [f64; 3],
     /// Up direction of any length above 0, each component −10⁶ … 10⁶; not parallel to the view. Default (0, 1, 0).
     #[serde(default = "default_up")]
     #[schema(min_items = 3, max_items = 3)]
     pub up: [f64; 3],
-    /// Full vertical field of view, degrees, 0.1 … 179. Default 45.
-    #[serde(default = "default_fov")]
-    pub vertical_fov_deg: f64,
+    /// Full vertical field of view, degrees, 0.1 … 179. Default 45. Not together with `intrinsics`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertical_fov_deg: Option<f64>,
+    /// The lens of a calibrated camera.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub intrinsics: Option<Intrinsics>,
+}
+
+/// Intrinsic parameters of a pinhole camera, pixels of a picture of `output.width` × `output.height`.
+///
+/// A point with the camera coordinates X (right), Y (down), Z (ahead) is seen at u = fx X / Z + cx, v = fy Y / Z + cy. u and v count
+/// from the upper left corner of the picture: the middle of the first pixel is at (½, ½). OpenCV counts from the middle of the first
+/// pixel: add ½ to its `cx` and `cy`. Every pixel has to be within 89.5° of the axis. Lens distortion is not simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Intrinsics {
+    /// Focal length along x, pixels, 10⁻³ … 10⁸.
+    pub fx: f64,
+    /// Focal length along y, pixels, 10⁻³ … 10⁸.
+    pub fy: f64,
+    /// Column of the principal point, pixels from the left edge, −10⁶ … 10⁶.
+    pub cx: f64,
+    /// Row of the principal point, pixels from the upper edge, −10⁶ … 10⁶.
+    pub cy: f64,
 }
 
 /// A camera with parallel rays.
@@ -348,10 +384,10 @@ pub struct PerspectiveCamera {
 pub struct OrthographicCamera {
     /// Always `orthographic`.
     pub kind: OrthographicKind,
-    /// Middle of the image plane, m, −10⁶ … 10⁶.
+    /// Middle of the image plane, m, −10⁸ … 10⁸.
     #[schema(min_items = 3, max_items = 3)]
     pub position_m: [f64; 3],
-    /// The point in the middle of the picture, m, −10⁶ … 10⁶; at least 10⁻⁶ m from `position_m`.
+    /// The point in the middle of the picture, m, −10⁸ … 10⁸; at least 10⁻⁶ m from `position_m`.
     #[schema(min_items = 3, max_items = 3)]
     pub target_m: [f64; 3],
     /// Up direction of any length above 0, each component −10⁶ … 10⁶; not parallel to the view. Default (0, 1, 0).
@@ -364,10 +400,6 @@ pub struct OrthographicCamera {
 
 fn default_up() -> [f64; 3] {
     [0.0, 1.0, 0.0]
-}
-
-fn default_fov() -> f64 {
-    45.0
 }
 
 /// What to make. Its `kind` selects its type.
@@ -420,6 +452,7 @@ impl Output {
                 exposure_ev: o.exposure_ev,
                 tone_curve: o.tone_curve,
                 exr_pixel: o.exr_pixel,
+                embed_scene: o.embed_scene,
             },
             Self::IrradianceMap(o) => Encoding {
                 format: o.format,
@@ -427,6 +460,7 @@ impl Output {
                 exposure_ev: o.exposure_ev,
                 tone_curve: o.tone_curve,
                 exr_pixel: ExrPixel::Float,
+                embed_scene: o.embed_scene,
             },
         }
     }
@@ -469,7 +503,12 @@ pub struct ViewOutput {
     /// Number type of the EXR channels R, G, B, A and `albedo.*`; all others are always float. Default `half`.
     #[serde(default)]
     pub exr_pixel: ExrPixel,
-    /// Layers to compute and write. PNG holds `radiance` only. Default [`radiance`].
+    /// Whether the file contains the scene as JSON (`caustica:scene`), with meshes named by content ids. Default true.
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    pub embed_scene: bool,
+    /// Layers to compute and write. PNG holds `radiance` only. `depth` is to the first surface, the water's included, `seen_depth` to the
+    /// surface seen, which may lie behind the water like that of all other layers; both are along the viewing axis (z), not along the
+    /// ray. Default [`radiance`].
     #[serde(default = "default_layers")]
     pub layers: Vec<LayerName>,
 }
@@ -485,9 +524,22 @@ impl Default for ViewOutput {
             exposure_ev: 0.0,
             tone_curve: ToneCurve::default(),
             exr_pixel: ExrPixel::default(),
+            embed_scene: true,
             layers: default_layers(),
         }
     }
+}
+
+fn yes() -> bool {
+    true
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde hands over a reference"
+)]
+fn is_true(value: &bool) -> bool {
+    *value
 }
 
 fn default_width() -> u32 {
@@ -518,11 +570,11 @@ pub struct IrradianceMapOutput {
     pub kind: IrradianceMapKind,
     /// `"floor"` or an index into `objects`.
     pub receiver: Receiver,
-    /// Lower corner (x, z) of the map on the floor, m, −10⁶ … 10⁶. Floor only. Default: the floor's lower corner.
+    /// Lower corner (x, z) of the map on the floor, m, −10⁸ … 10⁸. Floor only. Default: the floor's lower corner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_items = 2, max_items = 2)]
     pub min_m: Option<[f64; 2]>,
-    /// Upper corner (x, z) of the map on the floor, m, −10⁶ … 10⁶; greater than `min_m`. Floor only. Default: the floor's upper
+    /// Upper corner (x, z) of the map on the floor, m, −10⁸ … 10⁸; greater than `min_m`. Floor only. Default: the floor's upper
     /// corner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_items = 2, max_items = 2)]
@@ -575,6 +627,9 @@ pub struct IrradianceMapOutput {
     /// Tone curve of PNG. Default `pbr_neutral`.
     #[serde(default)]
     pub tone_curve: ToneCurve,
+    /// Whether the file contains the scene as JSON (`caustica:scene`), with meshes named by content ids. Default true.
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    pub embed_scene: bool,
 }
 
 fn default_map_format() -> ImageFormat {
@@ -617,6 +672,8 @@ pub struct Encoding {
     pub tone_curve: ToneCurve,
     /// Number type of colour channels (EXR).
     pub exr_pixel: ExrPixel,
+    /// Whether the file contains the scene.
+    pub embed_scene: bool,
 }
 
 /// File format of a result.
@@ -652,15 +709,18 @@ pub enum ExrPixel {
     Float,
 }
 
-/// A layer of a view.
+/// A layer of a view. Where a pixel sees no surface, its depths are 10¹⁰ m and all its other values except the radiance are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LayerName {
     /// Radiance at the camera, W/(m² sr), and alpha; EXR root R G B A.
     Radiance,
-    /// Distance along the viewing axis to the first surface on the ray, the water's included, m (the other layers are those of
-    /// the surface seen through the water); EXR root Z; 10⁹ m or more if the ray meets nothing.
+    /// Distance along the viewing axis (not along the ray) to the first surface on the ray, the water's included, m; EXR root Z;
+    /// 10¹⁰ if the ray meets nothing. All other layers are those of the surface seen, which may lie behind the water.
     Depth,
+    /// Distance along the viewing axis to the surface seen, m: (P − camera position) · viewing direction. It is `depth` where no water
+    /// is in between; EXR seen.Z; 10¹⁰ if no surface is seen.
+    SeenDepth,
     /// World normal of the surface seen through the water; EXR N.X N.Y N.Z.
     Normal,
     /// World position of the surface seen through the water, m; EXR P.X P.Y P.Z.

@@ -7,7 +7,7 @@ use super::findings::Findings;
 use super::parse::ROTATION_LENGTH_TOLERANCE;
 use super::quality::Quality;
 use super::ranges::{self, number};
-use super::types::{Camera, Floor, Light, Object, Scale, Scene, Water, Wave};
+use super::types::{Camera, Floor, Intrinsics, Light, Object, Output, Scale, Scene, Water, Wave};
 use super::validate_output;
 use crate::config::Limits;
 
@@ -35,7 +35,7 @@ impl Scene {
         lights(&mut findings, &self.lights, limits);
         objects(&mut findings, &self.objects, limits);
         if let Some(camera_there) = &self.camera {
-            camera(&mut findings, camera_there);
+            camera(&mut findings, camera_there, &self.output);
         }
         quality(&mut findings, &self.quality);
         validate_output::output(&mut findings, self, limits);
@@ -153,7 +153,7 @@ fn rotation(findings: &mut Findings, pointer: String, rotation: [f64; 4]) {
     }
 }
 
-fn camera(findings: &mut Findings, camera: &Camera) {
+fn camera(findings: &mut Findings, camera: &Camera, output: &Output) {
     let (position_m, target_m, up) = camera.pose();
     let coordinate = &ranges::COORDINATE;
     let mut is_sound = findings.numbers("/camera/position_m", &position_m, coordinate);
@@ -162,7 +162,16 @@ fn camera(findings: &mut Findings, camera: &Camera) {
     match camera {
         Camera::Perspective(c) => {
             let pointer = "/camera/vertical_fov_deg";
-            findings.number(pointer, c.vertical_fov_deg, &ranges::FIELD_OF_VIEW);
+            if let Some(degrees) = c.vertical_fov_deg {
+                findings.number(pointer, degrees, &ranges::FIELD_OF_VIEW);
+            }
+            if c.vertical_fov_deg.is_some() && c.intrinsics.is_some() {
+                let detail = "the lens is given by `vertical_fov_deg` and by `intrinsics`";
+                findings.invalid(pointer, detail, "one of the two");
+            }
+            if let Some(intrinsics) = &c.intrinsics {
+                lens(findings, intrinsics, output);
+            }
         }
         Camera::Orthographic(c) => {
             findings.number("/camera/height_m", c.height_m, &ranges::EXTENT);
@@ -198,6 +207,40 @@ fn camera(findings: &mut Findings, camera: &Camera) {
             "the up direction is parallel to the view",
             "a direction across the view, such as [0, 0, -1] for a camera that looks straight down",
         );
+    }
+}
+
+/// The intrinsic parameters, and the angles at which they show the edges of the picture.
+fn lens(findings: &mut Findings, intrinsics: &Intrinsics, output: &Output) {
+    let Intrinsics { fx, fy, cx, cy } = *intrinsics;
+    let mut is_sound = true;
+    for (name, value, range) in [
+        ("fx", fx, &ranges::FOCAL_LENGTH),
+        ("fy", fy, &ranges::FOCAL_LENGTH),
+        ("cx", cx, &ranges::PRINCIPAL_POINT),
+        ("cy", cy, &ranges::PRINCIPAL_POINT),
+    ] {
+        is_sound &= findings.number(format!("/camera/intrinsics/{name}"), value, range);
+    }
+    let Output::View(view) = output else {
+        return;
+    };
+    if !is_sound {
+        return;
+    }
+    for (name, center, focal, side) in [("cx", cx, fx, view.width), ("cy", cy, fy, view.height)] {
+        let farthest = center.abs().max((f64::from(side) - center).abs());
+        let degrees = (farthest / focal).atan().to_degrees();
+        if degrees > ranges::MAX_OFF_AXIS_DEG {
+            findings.invalid(
+                format!("/camera/intrinsics/{name}"),
+                format!("an edge of the picture of {side} pixels is {degrees:.3}° off the viewing axis"),
+                format!(
+                    "at most {}°: the principal point nearer to the picture, or a longer focal length",
+                    ranges::MAX_OFF_AXIS_DEG
+                ),
+            );
+        }
     }
 }
 

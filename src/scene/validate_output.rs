@@ -67,7 +67,7 @@ fn layers(findings: &mut Findings, output: &ViewOutput) {
 }
 
 /// The number of layers that exist.
-const LAYER_COUNT: usize = 6;
+const LAYER_COUNT: usize = 7;
 
 fn pixels(findings: &mut Findings, pointer: &str, [width, height]: [u32; 2], limits: &Limits) {
     let count = u64::from(width) * u64::from(height);

@@ -10,7 +10,7 @@ use caustica::cli::animate::time_of;
 use caustica::cli::scene_file;
 use caustica::cli::scene_flags::{SceneArgs, SceneOverrides};
 use caustica::config::Limits;
-use caustica::frame::{Frame, Layer};
+use caustica::frame::{Frame, FrameKind, Layer};
 use caustica::gpu::GpuError;
 use caustica::image::{Metadata, encode};
 use caustica::render::RenderError;
@@ -120,6 +120,9 @@ fn picture_of(file: &Path, frame: u32) -> Vec<u8> {
         .resolved;
     resolved.scene.time_s = time_of(resolved.scene.time_s, frame, 30.0);
     let frame = Frame {
+        kind: FrameKind::View,
+        projection: None,
+        scene: None,
         width: 1,
         height: 1,
         layers: [(

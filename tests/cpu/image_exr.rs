@@ -2,15 +2,16 @@
 
 use caustica::image::layers::format_of;
 use caustica::image::{DecodeError, EncodeError, Encoded, Metadata, decode_exr, encode};
-use caustica::scene::{ExrPixel, LayerName};
+use caustica::scene::{Camera, ExrPixel, LayerName};
 use exr::prelude::{ReadChannels, ReadLayers};
 use half::f16;
 
-use super::image_support::{exr, frame, layer};
+use super::image_support::{exr, frame, layer, map};
 
-const ALL: [(LayerName, usize); 6] = [
+const ALL: [(LayerName, usize); 7] = [
     (LayerName::Radiance, 4),
     (LayerName::Depth, 1),
+    (LayerName::SeenDepth, 1),
     (LayerName::Normal, 3),
     (LayerName::Position, 3),
     (LayerName::Albedo, 3),
@@ -74,6 +75,7 @@ fn every_layer_comes_back_under_its_names() {
                 "irradiance.B",
                 "irradiance.G",
                 "irradiance.R",
+                "seen.Z",
             ]
         );
         for (index, (name, _)) in ALL.iter().enumerate() {
@@ -137,10 +139,9 @@ fn other_readers_see_the_picture_upright() {
 
 #[test]
 fn an_irradiance_map_fills_the_root_with_floats() {
-    let frame = frame(
+    let frame = map(
         3,
         2,
-        LayerName::Irradiance,
         layer(3, 2, 3, |x, y, c| {
             70_000.1 + (x + 3 * y) as f32 + c as f32 * 0.1
         }),
@@ -203,17 +204,31 @@ fn values_beyond_half_are_clamped_and_reported() {
     assert_eq!(read.channels["R"], values);
 }
 
+/// A layer alone has the channels that it has beside others.
 #[test]
-fn only_depth_may_be_infinite_and_becomes_far() {
-    let far = frame(
-        2,
-        1,
-        LayerName::Depth,
-        layer(2, 1, 1, |x, _, _| if x == 0 { f32::INFINITY } else { 2.5 }),
-    );
-    let read = decode_exr(&write(&far, ExrPixel::Half).bytes).expect("an EXR");
-    assert_eq!(read.channels["Z"], [1e10, 2.5]);
+fn channels_do_not_depend_on_the_other_layers() {
+    let together = decode_exr(&write(&full(4, 3), ExrPixel::Half).bytes).expect("an EXR");
+    for (index, (name, channels)) in ALL.iter().enumerate() {
+        let alone = frame(
+            4,
+            3,
+            *name,
+            layer(4, 3, *channels, |x, y, c| value(index, x, y, c)),
+        );
+        let alone = decode_exr(&write(&alone, ExrPixel::Half).bytes).expect("an EXR");
+        assert_eq!(alone.channels.len(), *channels, "{name:?}");
+        for (channel, samples) in &alone.channels {
+            assert_eq!(Some(samples), together.channels.get(channel), "{channel}");
+            assert_eq!(
+                alone.is_half[channel], together.is_half[channel],
+                "{channel}"
+            );
+        }
+    }
+}
 
+#[test]
+fn only_finite_numbers_are_written() {
     for (name, channels) in ALL {
         for bad in [f32::NAN, f32::NEG_INFINITY, f32::INFINITY] {
             let mut frame = full(4, 3);
@@ -222,10 +237,6 @@ fn only_depth_may_be_infinite_and_becomes_far() {
                 layer.data[(2 * 4 + 1) * channels + channels - 1] = bad;
             }
             let result = encode(&frame, &exr(ExrPixel::Half), &Metadata::of(&frame.stats));
-            if name == LayerName::Depth && bad == f32::INFINITY {
-                assert!(result.is_ok());
-                continue;
-            }
             let error = result.expect_err("not a number");
             let EncodeError::NonFinite {
                 layer,
@@ -243,6 +254,60 @@ fn only_depth_may_be_infinite_and_becomes_far() {
             );
         }
     }
+}
+
+#[test]
+fn the_camera_and_the_scene_are_in_the_file() {
+    let scene = r#"{"camera":"große Höhe"}"#;
+    let mut frame = full(4, 3);
+    let camera: Camera = serde_json::from_str(
+        r#"{ "position_m": [10, 20, 30], "target_m": [10, 20, 20],
+             "intrinsics": { "fx": 8, "fy": 6, "cx": 1, "cy": 2 } }"#,
+    )
+    .unwrap();
+    frame.projection = Some(camera.projection([4, 3]));
+    frame.scene = Some(scene.to_owned());
+    let bytes = write(&frame, ExrPixel::Half).bytes;
+    let texts = decode_exr(&bytes).expect("an EXR").texts;
+    assert!(texts["caustica:scene"].is_ascii());
+    let read: serde_json::Value = serde_json::from_str(&texts["caustica:scene"]).unwrap();
+    assert_eq!(read["camera"], "große Höhe");
+    let meta = exr::meta::MetaData::read_from_buffered(std::io::Cursor::new(&bytes), true)
+        .expect("a header");
+    let own = &meta.headers[0].own_attributes;
+    // For row vectors: the camera looks along −z; camera space has z ahead.
+    assert_eq!(
+        own.world_to_camera.unwrap(),
+        [
+            1., 0., 0., 0., 0., 1., 0., 0., 0., 0., -1., 0., -10., -20., 30., 1.
+        ]
+    );
+    let ndc = own.world_to_normalized_device.unwrap();
+    // A point 2 m ahead, 0.5 m to the right and 0.25 m up is at u = 8 · 0.5 / 2 + 1 = 3, v = −6 · 0.25 / 2 + 2 = 1.25.
+    let p = [10.5, 20.25, 28.0, 1.0];
+    let [x, y, z, w] = [0, 1, 2, 3].map(|j| (0..4).map(|i| p[i] * ndc[4 * i + j]).sum::<f32>());
+    assert!(
+        (x / w - 3.0 / 4.0).abs() < 1e-6 && (y / w - 1.25 / 3.0).abs() < 1e-6,
+        "{x} {y} {w}"
+    );
+    assert!((z / w - (1.0 - 0.01 / 2.0)).abs() < 1e-6, "{z} {w}");
+    let degrees = |a: f64, b: f64| (a.atan() + b.atan()).to_degrees() as f32;
+    assert_eq!(
+        own.horizontal_field_of_view,
+        Some(degrees(1.0 / 8.0, 3.0 / 8.0))
+    );
+    assert_eq!(
+        own.vertical_field_of_view,
+        Some(degrees(2.0 / 6.0, 1.0 / 6.0))
+    );
+    // Without them nothing is written.
+    let plain = write(&full(4, 3), ExrPixel::Half).bytes;
+    assert!(
+        !decode_exr(&plain)
+            .unwrap()
+            .texts
+            .contains_key("caustica:scene")
+    );
 }
 
 #[test]

@@ -5,7 +5,7 @@ use caustica::image::{DecodeError, EncodeError, Metadata, decode_png, encode};
 use caustica::scene::{LayerName, ToneCurve};
 use image::GenericImageView;
 
-use super::image_support::{frame, layer, png, stats};
+use super::image_support::{frame, layer, map, png, stats};
 
 /// A picture that no mirror, flip, transposition or exchange of channels leaves as it is.
 fn asymmetric(x: u32, y: u32, channel: usize) -> f32 {
@@ -102,10 +102,9 @@ fn exposure_comes_before_the_tone_curve() {
 fn irradiance_maps_are_shown_as_white_diffuse_surfaces() {
     // E = π is radiance 1 of a white surface; half of it is 0.5.
     let pi = std::f32::consts::PI;
-    let frame = frame(
+    let frame = map(
         2,
         1,
-        LayerName::Irradiance,
         layer(2, 1, 3, |x, _, _| if x == 0 { pi } else { pi / 2.0 }),
     );
     let encoded = encode(
@@ -252,7 +251,8 @@ fn frames_that_cannot_be_shown_are_refused() {
 
 #[test]
 fn files_carry_their_provenance_and_colour_space() {
-    let frame = frame(2, 2, LayerName::Radiance, layer(2, 2, 4, |_, _, _| 0.5));
+    let mut frame = frame(2, 2, LayerName::Radiance, layer(2, 2, 4, |_, _, _| 0.5));
+    frame.scene = Some("{\"name\":\"große Höhe\"}".to_owned());
     let bytes = encode(
         &frame,
         &png(8, ToneCurve::Clip),
@@ -261,6 +261,7 @@ fn files_carry_their_provenance_and_colour_space() {
     .expect("a plain frame")
     .bytes;
     let texts = decode_png(&bytes).expect("a PNG").texts;
+    assert_eq!(texts["caustica:scene"], "{\"name\":\"große Höhe\"}");
     assert_eq!(texts["Software"], "Caustica 9.8.7");
     assert_eq!(texts["caustica:scene_hash"], "blake3:0123");
     assert!(texts["caustica:stats"].contains("\"planned_peak_bytes\":4096"));

@@ -2,17 +2,28 @@
 
 use std::collections::BTreeMap;
 
-use caustica::frame::{Frame, Layer};
+use caustica::frame::{Frame, FrameKind, Layer};
 use caustica::scene::{Encoding, ExrPixel, ImageFormat, LayerName, ToneCurve};
 use caustica::stats::{AdapterStats, ExposureStats, PassStats, Stats, Warning};
 
-/// A frame of one layer.
+/// A view of one layer.
 pub(crate) fn frame(width: u32, height: u32, name: LayerName, layer: Layer) -> Frame {
     Frame {
+        kind: FrameKind::View,
         width,
         height,
         layers: BTreeMap::from([(name, layer)]),
+        projection: None,
         stats: stats(1.0),
+        scene: None,
+    }
+}
+
+/// An irradiance map.
+pub(crate) fn map(width: u32, height: u32, layer: Layer) -> Frame {
+    Frame {
+        kind: FrameKind::IrradianceMap,
+        ..frame(width, height, LayerName::Irradiance, layer)
     }
 }
 
@@ -70,6 +81,7 @@ pub(crate) fn png(bits: u32, tone_curve: ToneCurve) -> Encoding {
         exposure_ev: 0.0,
         tone_curve,
         exr_pixel: ExrPixel::Half,
+        embed_scene: true,
     }
 }
 

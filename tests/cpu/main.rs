@@ -46,6 +46,7 @@ mod reference_lens;
 mod reference_meshes;
 mod reference_texels;
 mod rooms;
+mod scene_camera;
 mod scene_facts;
 #[path = "../support/scene_files.rs"]
 mod scene_files;

@@ -202,11 +202,9 @@ fn polygons_that_cross_themselves_are_reported() {
     warned(&crossed, "mesh_crossed_polygons", "1 polygons cross");
 }
 
-#[test]
-fn a_polygon_with_very_many_corners_is_cut() {
-    // A star of 20 000 points.
+/// A star with half as many points as corners.
+fn star(count: u32) -> String {
     use std::fmt::Write as _;
-    let count = 40_000;
     let mut text = String::new();
     for i in 0..count {
         let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
@@ -223,14 +221,22 @@ fn a_polygon_with_very_many_corners_is_cut() {
     for i in 1..=count {
         write!(text, " {i}").unwrap();
     }
-    let mesh = good(&text);
+    text
+}
+
+#[test]
+fn a_polygon_with_very_many_corners_is_cut() {
+    let count = 20_000;
+    let mesh = good(&star(count));
     assert_eq!(mesh.triangles.len(), count as usize - 2);
     let right = f64::from(count / 2) * 2.0 * (std::f64::consts::TAU / f64::from(count)).sin();
-    assert!(
-        (area(&mesh) / right - 1.0).abs() < 1e-3,
-        "{} {right}",
-        area(&mesh)
+    let area = area(&mesh);
+    assert!((area / right - 1.0).abs() < 1e-3, "{area} {right}");
+    let error = refused(
+        &star(100_002),
+        &["OBJ line 100003", "100002 corners", "accepted are 100000"],
     );
+    assert!(matches!(error, MeshError::PolygonTooLarge { .. }));
 }
 
 #[test]
@@ -703,7 +709,7 @@ fn a_look_that_is_not_drawn_is_named() {
         let mtl = format!("newmtl red\nKd 1 0 0\n{statement}\nnewmtl blue\nKd 0 0 1\n");
         let mesh = read_with(PAINTED, &mtl).unwrap();
         assert_eq!(codes(&mesh), [code], "{statement}");
-        warned(&mesh, code, &format!("1 materials "));
+        warned(&mesh, code, "1 materials ");
         warned(&mesh, code, &format!("`red` (`{statement}`)"));
         // A material that no face uses has no look.
         let unused = format!("{mtl}newmtl other\nKe 1 1 1\nd 0\n");

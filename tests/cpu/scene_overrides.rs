@@ -21,7 +21,7 @@ fn field(name: &str) -> Field {
 #[test]
 fn every_serialised_field_of_quality_and_output_is_there_once() {
     let map = json!({ "output": {
-        "kind": "irradiance_map", "receiver": "floor", "min_m": [0, 0], "max_m": [1, 1], "width": 1, "height": 1, "light": 0
+        "kind": "irradiance_map", "receiver": "floor", "min_m": [0, 0], "max_m": [1, 1], "width": 1, "height": 1, "light": 0, "embed_scene": false
     } });
     let wishes =
         json!({ "quality": { "method": "any", "target_error": 0.1, "time_budget_ms": 10 } });

@@ -77,7 +77,7 @@ fn texts_that_are_not_json_are_refused_with_line_and_column() {
         ("{'time_s': 1}", "key must be a string"),
         ("{\"time_s\": 1,}", "trailing comma"),
         ("// scene\n{}", "line 1"),
-        ("\u{feff}{}", "line 1"),
+        ("{}\u{feff}", "line 1"),
         ("{\"a\": \"\\ud800\"}", "line 1"),
     ];
     for (text, detail) in table {
@@ -86,6 +86,39 @@ fn texts_that_are_not_json_are_refused_with_line_and_column() {
         assert_eq!(issue.kind, IssueKind::Syntax, "{text}");
         assert!(issue.detail.contains(detail), "{text}: {}", issue.detail);
         assert!(!issue.accepted.is_empty(), "{text}");
+    }
+}
+
+#[test]
+fn a_byte_order_mark_is_ignored_and_other_encodings_are_named() {
+    let text = r#"{ "time_s": 2 }"#;
+    let marked = [b"\xef\xbb\xbf", text.as_bytes()].concat();
+    assert_eq!(Scene::from_json(&marked).unwrap().time_s, 2.0);
+    let utf_16 = |unit: fn(u16) -> [u8; 2], mark: &str| -> Vec<u8> {
+        format!("{mark}{text}")
+            .encode_utf16()
+            .flat_map(unit)
+            .collect()
+    };
+    for bytes in [
+        utf_16(u16::to_le_bytes, "\u{feff}"),
+        utf_16(u16::to_be_bytes, "\u{feff}"),
+        utf_16(u16::to_le_bytes, ""),
+        utf_16(u16::to_be_bytes, ""),
+        text.bytes().flat_map(|byte| [byte, 0, 0, 0]).collect(),
+    ] {
+        let error = Scene::from_json(&bytes).unwrap_err();
+        let issue = &error.issues[0];
+        assert_eq!(issue.kind, IssueKind::Syntax);
+        assert!(issue.detail.contains("UTF-16"), "{issue}");
+        assert!(issue.accepted.contains("UTF-8"), "{issue}");
+    }
+    for blank in [&b"\xef\xbb\xbf"[..], b"\xef\xbb\xbf \n"] {
+        assert!(
+            Scene::from_json(blank).unwrap_err().issues[0]
+                .detail
+                .contains("empty")
+        );
     }
 }
 

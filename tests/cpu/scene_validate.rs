@@ -79,7 +79,7 @@ fn ranges() -> Vec<RangeRow> {
     let both = |a: f64, b: f64| [Some(a), Some(b)];
     vec![
         ("/time_s", [-1e12, 1e12], both(-1.001e12, 1.001e12)),
-        ("/water/level_m", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
+        ("/water/level_m", [-1e8, 1e8], both(-1.1e8, 1.1e8)),
         ("/water/ior", [1.0, 4.0], both(0.999, 4.001)),
         (
             "/water/absorption_per_m/0",
@@ -104,7 +104,7 @@ fn ranges() -> Vec<RangeRow> {
         ("/water/waves/0/period_s", [1e-6, 1e12], both(0.0, 1.1e12)),
         ("/floor/depth_m", [0.0, 11_000.0], both(-0.1, 11_000.1)),
         ("/floor/size_m/1", [1e-6, 1e6], both(0.0, 1.1e6)),
-        ("/floor/center_m/0", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
+        ("/floor/center_m/0", [-1e8, 1e8], both(-1.1e8, 1.1e8)),
         ("/floor/albedo/0", [0.0, 1.0], both(-0.001, 1.001)),
         ("/lights/0/elevation_deg", [-90.0, 90.0], both(-90.1, 90.1)),
         ("/lights/0/azimuth_deg", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
@@ -116,13 +116,13 @@ fn ranges() -> Vec<RangeRow> {
         ),
         (
             "/objects/0/translation_m/1",
-            [-1e6, 1e6],
-            both(-1.1e6, 1.1e6),
+            [-1e8, 1e8],
+            both(-1.1e8, 1.1e8),
         ),
         ("/objects/0/scale", [1e-6, 1e6], both(0.0, 1.1e6)),
         ("/objects/0/albedo/2", [0.0, 1.0], both(-0.001, 1.001)),
-        ("/camera/position_m/0", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
-        ("/camera/target_m/0", [-1e6, 1e6], both(-1.1e6, 1.1e6)),
+        ("/camera/position_m/0", [-1e8, 1e8], both(-1.1e8, 1.1e8)),
+        ("/camera/target_m/0", [-1e8, 1e8], both(-1.1e8, 1.1e8)),
         ("/camera/vertical_fov_deg", [0.1, 179.0], both(0.09, 179.1)),
         ("/quality/water_cells", [2.0, 2048.0], both(1.0, 2049.0)),
         ("/quality/map_texels", [16.0, 4096.0], both(15.0, 4097.0)),

@@ -1,6 +1,7 @@
 //! Constants in Rust and in WGSL are equal, and dispatches cover their work.
 
 use caustica::facts::{MOST_LIGHTS, SceneFacts};
+use caustica::frame::FAR_DEPTH_M;
 use caustica::gpu::shader::Module;
 use caustica::graph::{BandRun, BeamSetRun, Scope};
 use caustica::methods::planes::depth_profile;
@@ -50,6 +51,7 @@ fn agrees(name: &str, expected: f64) {
 #[test]
 fn notes_of_pixels_agree_and_stay_apart() {
     agrees("MARCH_UNFINISHED", f64::from(MARCH_UNFINISHED));
+    agrees("FAR_DEPTH_M", f64::from(FAR_DEPTH_M));
     let most_samples = ranges::PixelSamples::MAX.pow(2) as f32;
     assert!(most_samples < MARCH_UNFINISHED);
     let most = most_samples * (MARCH_UNFINISHED + 1.0);

@@ -44,7 +44,7 @@ pub(crate) fn box_obj(half: Vec3) -> String {
 }
 
 /// A pool with a box; `change` edits the JSON.
-fn pool(half: Vec3, change: impl FnOnce(&mut Value)) -> ResolvedScene {
+pub(crate) fn pool(half: Vec3, change: impl FnOnce(&mut Value)) -> ResolvedScene {
     let mesh = mesh_of(box_obj(half).as_bytes());
     let mut value = json!({
         "water": { "waves": [], "absorption_per_m": [0.3, 0.06, 0.0] },

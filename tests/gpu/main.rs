@@ -9,6 +9,7 @@
 mod accuracy_program;
 mod accuracy_service;
 mod beam_sets;
+mod camera_layers;
 mod chosen_dials;
 mod conformance;
 mod determinism;

@@ -53,7 +53,7 @@ async fn info_has_adapter_limits_and_words() {
     assert_eq!(info.memory_budget_bytes, 2048 << 20);
     assert_eq!(info.queue, 1);
     assert_eq!(info.features["ImageFormat"], ["png", "exr"]);
-    assert_eq!(info.features["LayerName"].len(), 6);
+    assert_eq!(info.features["LayerName"].len(), 7);
     for (name, words) in &info.features {
         assert!(!words.is_empty(), "{name}");
     }

@@ -242,7 +242,10 @@ impl Clear {
         let eye = DVec3::from(camera.position_m);
         let forward = (DVec3::from(camera.target_m) - eye).normalize();
         let right = forward.cross(DVec3::from(camera.up)).normalize();
-        let half = (0.5 * camera.vertical_fov_deg.to_radians()).tan();
+        let degrees = camera
+            .vertical_fov_deg
+            .unwrap_or(scene::DEFAULT_FIELD_OF_VIEW_DEG);
+        let half = (0.5 * degrees.to_radians()).tan();
         Ok(Self {
             eye,
             forward,

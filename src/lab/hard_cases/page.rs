@@ -83,6 +83,7 @@ fn row(outcome: &Outcome, folder: &str) -> String {
 pub fn thumbnail(outcome: &Outcome) -> Option<Result<Vec<u8>, EncodeError>> {
     let frame = outcome.picture.as_ref()?;
     let encoding = Encoding {
+        embed_scene: false,
         format: ImageFormat::Png,
         png_bits: 8,
         exposure_ev: 0.0,

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use caustica::cache::{WarmSun, WarmUp, WarmedMap};
-use caustica::frame::{Frame, Layer};
+use caustica::frame::{Frame, FrameKind, Layer};
 use caustica::gpu::GpuError;
 use caustica::gpu_queue::RenderBackend;
 use caustica::mesh::Mesh;
@@ -311,9 +311,15 @@ fn draw(resolved: &ResolvedScene) -> Frame {
     stats.exposure.scale = 1.0;
     stats.time_ms.gpu = 2.5;
     Frame {
+        kind: match resolved.scene.output {
+            Output::View(_) => FrameKind::View,
+            Output::IrradianceMap(_) => FrameKind::IrradianceMap,
+        },
         width,
         height,
         layers: BTreeMap::from([(name, Layer { channels, data })]),
+        projection: None,
         stats,
+        scene: None,
     }
 }
