@@ -30,6 +30,7 @@ pub(crate) fn encoding(frame: &Frame, effort: Effort) -> Result<Table, EncodeErr
     ];
     for (name, format, png_bits) in formats {
         let encoding = Encoding {
+            embed_scene: true,
             format,
             png_bits,
             exposure_ev: 0.0,

@@ -75,6 +75,10 @@ pub fn encode(
     let size = Vec2(frame.width as usize, frame.height as usize);
     let mut shared = ImageAttributes::new(IntegerBounds::from_dimensions(size));
     shared.chromaticities = Some(REC_709);
+    shared.pixel_aspect = frame
+        .projection
+        .as_ref()
+        .map_or(1.0, |p| p.pixel_aspect() as f32);
     let stats = metadata.stats_json(&warnings);
     let scene = frame.scene.as_deref().map(ascii);
     let texts = [
@@ -122,7 +126,10 @@ fn camera_attributes(frame: &Frame) -> LayerAttributes {
     // The columns of a matrix for column vectors are the rows of that for row vectors.
     let for_rows = |matrix: DMat4| Some(matrix.to_cols_array().map(|v| v as f32));
     let angles = projection.field_of_view_deg();
+    let (window_width, window_center) = projection.screen_window();
     LayerAttributes {
+        screen_window_width: window_width as f32,
+        screen_window_center: Vec2(window_center.x as f32, window_center.y as f32),
         world_to_camera: for_rows(projection.world_to_camera()),
         world_to_normalized_device: for_rows(projection.world_to_ndc()),
         horizontal_field_of_view: angles.map(|[x, _]| x as f32),

@@ -1,6 +1,6 @@
 //! The projection of a camera, as vision and graphics programs state it.
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::types::{Camera, DEFAULT_FIELD_OF_VIEW_DEG};
 
@@ -126,6 +126,26 @@ impl Projection {
                 Some([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
             }
             Lens::Orthographic { .. } => None,
+        }
+    }
+
+    /// Width and centre (right, up) of the picture in the plane at unit distance, as OpenEXR's screen window (with parallel rays: metres).
+    pub fn screen_window(&self) -> (f64, DVec2) {
+        let [width, height] = self.pixels.map(f64::from);
+        match self.lens {
+            Lens::Perspective { fx, fy, cx, cy } => {
+                let center = DVec2::new((0.5 * width - cx) / fx, (cy - 0.5 * height) / fy);
+                (width / fx, center)
+            }
+            Lens::Orthographic { pixels_per_m } => (width / pixels_per_m, DVec2::ZERO),
+        }
+    }
+
+    /// Width of a pixel over its height.
+    pub fn pixel_aspect(&self) -> f64 {
+        match self.lens {
+            Lens::Perspective { fx, fy, .. } => fy / fx,
+            Lens::Orthographic { .. } => 1.0,
         }
     }
 

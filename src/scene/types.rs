@@ -709,7 +709,15 @@ pub enum ExrPixel {
     Float,
 }
 
-/// A layer of a view. Where a pixel sees no surface, its depths are 10¹⁰ m and all its other values except the radiance are 0.
+/// A layer of a view.
+///
+/// - `radiance`: at the camera, W/(m² sr), with alpha; EXR R G B A.
+/// - `depth`: distance along the viewing axis (z, not the length of the ray) to the first surface on the ray, the water's included, m;
+///   EXR Z.
+/// - `seen_depth`: distance along the viewing axis to the surface seen, which may lie behind the water, m; EXR seen.Z.
+/// - `normal`, `position`, `albedo`, `irradiance`: of the surface seen; EXR N.X N.Y N.Z, P.X P.Y P.Z, albedo.R … and irradiance.R ….
+///
+/// Where a pixel sees no surface, `seen_depth` is 10¹⁰ m and these four are 0; `depth` is 10¹⁰ m only if there is no water either.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LayerName {

@@ -17,6 +17,9 @@ pub const MIN_VIEW_DISTANCE_M: f64 = 1e-6;
 /// Smallest sine of the angle between the up direction and the view.
 pub const MIN_UP_SINE: f64 = 1e-6;
 
+/// Largest ratio of the sides of a pixel.
+const MAX_PIXEL_ASPECT: f64 = 1000.0;
+
 impl Scene {
     /// Checks every range and reference.
     ///
@@ -222,12 +225,23 @@ fn lens(findings: &mut Findings, intrinsics: &Intrinsics, output: &Output) {
     ] {
         is_sound &= findings.number(format!("/camera/intrinsics/{name}"), value, range);
     }
-    let Output::View(view) = output else {
-        return;
-    };
     if !is_sound {
         return;
     }
+    let aspect = fy / fx;
+    if !(1.0 / MAX_PIXEL_ASPECT..=MAX_PIXEL_ASPECT).contains(&aspect) {
+        findings.invalid(
+            "/camera/intrinsics/fy",
+            format!(
+                "pixels are {} times as wide as they are high",
+                number(aspect)
+            ),
+            format!("`fy` / `fx` of 1/{MAX_PIXEL_ASPECT} … {MAX_PIXEL_ASPECT}"),
+        );
+    }
+    let Output::View(view) = output else {
+        return;
+    };
     for (name, center, focal, side) in [("cx", cx, fx, view.width), ("cy", cy, fy, view.height)] {
         let farthest = center.abs().max((f64::from(side) - center).abs());
         let degrees = (farthest / focal).atan().to_degrees();

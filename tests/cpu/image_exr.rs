@@ -300,6 +300,13 @@ fn the_camera_and_the_scene_are_in_the_file() {
         own.vertical_field_of_view,
         Some(degrees(2.0 / 6.0, 1.0 / 6.0))
     );
+    // At distance 1 the picture reaches from −1/8 to 3/8 and, upwards, from −1/6 to 2/6; a pixel is 1/8 wide and 1/6 high.
+    assert_eq!(
+        (own.screen_window_width, own.screen_window_center.0),
+        (0.5, 0.125)
+    );
+    assert!((own.screen_window_center.1 - 0.5 / 6.0).abs() < 1e-7);
+    assert_eq!(meta.headers[0].shared_attributes.pixel_aspect, 0.75);
     // Without them nothing is written.
     let plain = write(&full(4, 3), ExrPixel::Half).bytes;
     assert!(

@@ -136,6 +136,9 @@ fn lenses_are_checked() {
             assert!(issue.detail.contains("89.6"), "{issue}");
         }
     }
+    let needles = calibrated(json!({ "fx": 1e7, "fy": 400, "cx": 480, "cy": 270 }));
+    let issue = only(&needles, "/camera/intrinsics/fy");
+    assert!(issue.detail.contains("4e-5 times as wide"), "{issue}");
     let mut both = calibrated(good);
     both["camera"]["vertical_fov_deg"] = json!(45);
     let issue = only(&both, "/camera/vertical_fov_deg");

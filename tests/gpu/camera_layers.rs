@@ -102,10 +102,7 @@ fn depths_positions_and_matrices_fit_each_other() {
         );
         let p_gl = gl * p.extend(1.0);
         assert_eq!(p_gl, DVec4::new(p_cv.x, -p_cv.y, -p_cv.z, 1.0));
-        let middle = [
-            (at as u32 % size[0]) as f64 + 0.5,
-            (at as u32 / size[0]) as f64 + 0.5,
-        ];
+        let middle = [at as u32 % size[0], at as u32 / size[0]].map(|i| f64::from(i) + 0.5);
         if p.y > 0.021 {
             // In the air: X = (u − cx) Z / fx.
             let projected = [0, 1].map(|i| k[i].dot(p_cv) / p_cv.z);
