@@ -51,8 +51,9 @@ pub fn of_picture(picture: &Picture, place: &str, notes: &[String]) -> String {
 /// The number of frames rendered and skipped.
 pub fn of_animation(rendered: usize, skipped: usize, elapsed: Duration) -> String {
     let seconds = elapsed.as_secs_f64();
+    let frames = if rendered == 1 { "frame" } else { "frames" };
     format!(
-        "{rendered} frames rendered, {skipped} skipped because their files exist, in {seconds:.1} s\n"
+        "{rendered} {frames} rendered, {skipped} skipped because their files exist, in {seconds:.1} s"
     )
 }
 
