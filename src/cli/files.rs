@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::error::CliError;
+use super::notes;
 use crate::output_files;
 use crate::scene::ImageFormat;
 
@@ -142,6 +143,8 @@ pub fn print(text: &str) -> Result<(), CliError> {
 }
 
 fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
+    // On a terminal, the result appears after what was said before it.
+    notes::flush();
     let mut stdout = io::stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

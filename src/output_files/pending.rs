@@ -62,7 +62,7 @@ impl<'a> Pending<'a> {
         let target = target_of(path)?;
         let mut way = way_to(&target)?;
         if let Way::Rename(temporary) = &mut way {
-            temporary.write_all(bytes)?;
+            temporary.as_file_mut().write_all(bytes)?;
             temporary.as_file().sync_all()?;
         }
         Ok(Self { target, bytes, way })

@@ -57,13 +57,24 @@ pub(super) fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     loop {
-        let temporary = builder.tempfile_in(folder_of(target))?;
+        let temporary = builder.tempfile_in(folder_of(target));
+        let temporary = temporary.map_err(without_path)?;
         // File systems without locks have no leftovers that can be told from files in use, so nothing is removed there.
         let _ = temporary.as_file().lock();
         // Another process may have locked and removed the file before this one locked it.
         if is_linked(temporary.as_file())? {
             return Ok(temporary);
         }
+    }
+}
+
+/// The system's own error. `tempfile` adds the temporary name, which tells a user nothing.
+fn without_path(error: io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(std::error::Error::source);
+    let cause = inner.and_then(|source| source.downcast_ref::<io::Error>());
+    match cause.and_then(io::Error::raw_os_error) {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error,
     }
 }
 

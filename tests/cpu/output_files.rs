@@ -205,6 +205,8 @@ fn places_that_cannot_be_written_to_are_found_before() {
     }
     check(&folder.0.join("x.png")).unwrap();
     assert_eq!(folder.names(), ["file"], "checking leaves nothing");
+    let error = check(&folder.0.join("no/x.png")).unwrap_err().to_string();
+    assert!(!error.contains(".tmp"), "nobody knows that name: {error}");
 }
 
 #[test]

@@ -8,6 +8,7 @@
 
 mod accuracy_program;
 mod accuracy_service;
+mod batches;
 mod beam_sets;
 mod chosen_dials;
 mod conformance;
