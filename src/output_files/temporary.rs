@@ -53,28 +53,19 @@ pub(super) fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
     let start = start_of(target.file_name().unwrap_or_default());
     let mut builder = Builder::new();
     builder.prefix(&start).suffix(END).rand_bytes(RANDOM_CHARS);
-    // The system subtracts the umask, as for every new file.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    // Created by the standard library, so that mode and errors are those of any new file.
+    let create = |path: &Path| {
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create_new(true).open(path)
+    };
     loop {
-        let temporary = builder.tempfile_in(folder_of(target));
-        let temporary = temporary.map_err(without_path)?;
+        let temporary = builder.make_in(folder_of(target), create)?;
         // File systems without locks have no leftovers that can be told from files in use, so nothing is removed there.
         let _ = temporary.as_file().lock();
         // Another process may have locked and removed the file before this one locked it.
         if is_linked(temporary.as_file())? {
             return Ok(temporary);
         }
-    }
-}
-
-/// The system's own error. `tempfile` adds the temporary name, which tells a user nothing.
-fn without_path(error: io::Error) -> io::Error {
-    let inner = error.get_ref().and_then(std::error::Error::source);
-    let cause = inner.and_then(|source| source.downcast_ref::<io::Error>());
-    match cause.and_then(io::Error::raw_os_error) {
-        Some(code) => io::Error::from_raw_os_error(code),
-        None => error,
     }
 }
 

@@ -7,6 +7,7 @@ use std::io::{ErrorKind, Read};
 use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use caustica::cli::files::Destination;
 use caustica::output_files::{Pending, check, clear_leftovers, is_stdout, target_of, write};
@@ -161,6 +162,30 @@ fn only_own_files_of_ended_processes_are_removed() {
     drop(used);
     clear_leftovers([paths[0].as_path()]);
     assert!(!folder.names().contains(&".x.png.inuse1.tmp".to_owned()));
+}
+
+#[test]
+fn files_in_use_are_left_alone_from_the_first_moment() {
+    let folder = Folder::new();
+    let path = folder.0.join("x.png");
+    let is_over = AtomicBool::new(false);
+    std::thread::scope(|threads| {
+        threads.spawn(|| {
+            while !is_over.load(Ordering::Relaxed) {
+                clear_leftovers([path.as_path()]);
+            }
+        });
+        let lost = (0..500).filter(|_| {
+            let pending = Pending::new(&path, b"x").unwrap();
+            let is_there = folder.names().iter().any(|name| name.ends_with(".tmp"));
+            pending.finish().unwrap();
+            !is_there
+        });
+        let lost = lost.count();
+        is_over.store(true, Ordering::Relaxed);
+        assert_eq!(lost, 0, "removed while it was written");
+    });
+    assert_eq!(folder.names(), ["x.png"]);
 }
 
 #[test]
