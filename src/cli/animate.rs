@@ -65,7 +65,6 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
     let start = Instant::now();
     let paths: Vec<PathBuf> = frame_paths(args);
     let format = files::format_of(&paths[0])?;
-    files::check_place(&paths[0])?;
     let mut scene = scene_file::load(&args.scene, Some(format), limits)?;
     let times_s = frame_times(args, &scene.resolved, limits)?;
     output_files::clear_leftovers(paths.iter().map(PathBuf::as_path));
@@ -79,7 +78,9 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
     for note in &scene.notes {
         say(format!("note: {note}"));
     }
-    if !missing.is_empty() {
+    if let Some((_, _, path)) = missing.first() {
+        // Frames that are all there need no place that can be written to.
+        files::check_place(path)?;
         let mut renderer = Renderer::new(config)?;
         let mut batch = Batch::new(missing.len());
         let mut last = None;
