@@ -5,7 +5,8 @@ CARGO_TARGET_DIR ?= target
 PROGRAM := $(CARGO_TARGET_DIR)/release/caustica
 PICTURE := out/teapot_pool.png
 
-# Without a session, Mesa's device selection finds no display and prints errors at every start. It is not needed, so switch it off.
+# Without a session, Mesa's device selection prints an error at every start. The program switches it off itself; this is for the test
+# binaries.
 ifndef XDG_RUNTIME_DIR
 export NODEVICE_SELECT ?= 1
 endif

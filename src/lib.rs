@@ -68,6 +68,7 @@
 //! | [`mesh`] | reading OBJ, repairs with a report, ray hierarchy |
 //! | [`graph`] | passes, slots, scopes and the planner's walk: generic, without water or wgpu calls |
 //! | [`gpu`] | device, kernels, buffers, timing; knows nothing of water |
+//! | [`output_files`] | writing files whole; what killed processes leave |
 //! | [`physics`] | formulas in f64, each with its source; [`physics::registry`] pairs them with their twins in `shaders/lib` |
 //! | [`stats`] | the cost of a frame, its energy account and its warnings |
 //! | [`config`] | every setting |
@@ -89,6 +90,7 @@ pub mod image;
 pub mod lab;
 pub mod mesh;
 pub mod methods;
+pub mod output_files;
 pub mod physics;
 pub mod plan;
 pub mod reference;

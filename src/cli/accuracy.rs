@@ -6,13 +6,14 @@ use clap::Args;
 use tokio_util::sync::CancellationToken;
 
 use super::error::CliError;
+use super::notes::say;
 use super::progress::Progress;
 use super::scene_file;
 use super::scene_flags::SceneArgs;
 use super::summary::columns;
 use crate::config::{Limits, RenderConfig};
 use crate::lab::study::dial::Dial;
-use crate::lab::study::report::write_study;
+use crate::lab::study::report::{ReportError, write_study};
 use crate::lab::study::study::Study;
 use crate::lab::study::sweep::{self, Refusal, StudyError, SweepSettings, run_study};
 use crate::reference::{ReferenceError, TruthSettings, truth};
@@ -110,12 +111,11 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
     )
     .map_err(|error| refused(args, error))?;
     progress.say("tables and plots");
-    let files = write_study(&args.output, &study, &images)
-        .map_err(|error| CliError::Study(error.to_string()))?;
+    let files = write_study(&args.output, &study, &images).map_err(not_written)?;
     progress.finish();
-    eprint!("{}", in_words(&study));
+    say(in_words(&study));
     for file in files {
-        eprintln!("{}", file.display());
+        say(file.display().to_string());
     }
     Ok(())
 }
@@ -144,6 +144,13 @@ fn no_truth(args: &AccuracyArgs, error: &ReferenceError) -> CliError {
         "{}: no float64 truth: {error}",
         args.scene.scene.display()
     ))
+}
+
+fn not_written(error: ReportError) -> CliError {
+    match error {
+        ReportError::Write { path, reason } => CliError::write(&path, reason),
+        other => CliError::Study(other.to_string()),
+    }
 }
 
 fn refused(args: &AccuracyArgs, error: StudyError<RenderError>) -> CliError {

@@ -3,21 +3,24 @@
 //! Frames are independent: any set of them may be rendered by any process in any order, and a file that exists is complete. So
 //! the same command with `--skip-existing` finishes a range that was interrupted.
 
-use std::io::IsTerminal;
-use std::path::Path;
-use std::time::{Duration, Instant};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
+use super::batch::Batch;
 use super::error::CliError;
-use super::frames::{FramePattern, FrameSet};
+use super::frame_pattern::FramePattern;
+use super::frames::FrameSet;
+use super::notes::say;
 use super::scene_flags::SceneArgs;
 use super::{files, picture, scene_file, summary};
 use crate::config::{Limits, RenderConfig};
 use crate::methods;
+use crate::output_files;
 use crate::render::{Prepared, RenderError, Renderer};
 use crate::scene::ResolvedScene;
+use crate::stats::Warning;
 
 /// Which frames to render, and where to write them.
 #[derive(Clone, Debug, Args)]
@@ -25,13 +28,14 @@ pub struct AnimateArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Frames: `0-59`, `1-20:4` (every 4th), `30`, or several joined by commas.
-    #[arg(long, value_name = "RANGES")]
+    /// Frames: `0-59`, `-10--1`, `1-20x4` or `1-20:4` (every 4th), `30`, or several joined by commas.
+    #[arg(long, value_name = "RANGES", allow_hyphen_values = true)]
     pub frames: FrameSet,
     /// Frames per second: frame f is rendered at time_s + f / fps.
     #[arg(long, default_value_t = 30.0, value_parser = frame_rate)]
     pub fps: f64,
-    /// Files to write, with a place for the frame number: `frame.%04d.png`; .png or .exr decides the format.
+    /// Files to write, with a place for the frame number in the file name: `frame.%04d.png` or `frame.####.png`; .png or .exr decides
+    /// the format. A % in the name is written %%.
     #[arg(short, long, value_name = "PATTERN")]
     pub output: FramePattern,
     /// Skip frames whose file exists.
@@ -48,8 +52,8 @@ fn frame_rate(text: &str) -> Result<f64, String> {
 }
 
 /// The time of a frame, s.
-pub fn time_of(scene_time_s: f64, frame: u32, fps: f64) -> f64 {
-    scene_time_s + f64::from(frame) / fps
+pub fn time_of(scene_time_s: f64, frame: i64, fps: f64) -> f64 {
+    scene_time_s + frame as f64 / fps
 }
 
 /// Renders frames one after the other until all are done or one fails.
@@ -59,68 +63,70 @@ pub fn time_of(scene_time_s: f64, frame: u32, fps: f64) -> f64 {
 /// Those of `render`. The frames before the failing one have been written.
 pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let start = Instant::now();
-    let frames = args.frames.frames();
-    let any_path = args.output.path(0);
-    let format = files::format_of(&any_path)?;
-    files::check_place(&any_path)?;
+    let paths: Vec<PathBuf> = frame_paths(args);
+    let format = files::format_of(&paths[0])?;
     let mut scene = scene_file::load(&args.scene, Some(format), limits)?;
-    let frame_times = frame_times(args, &scene.resolved, limits)?;
-    let mut missing: Vec<&(u32, f64)> = Vec::new();
-    for moment in &frame_times {
-        let (frame, time_s) = *moment;
+    let times_s = frame_times(args, &scene.resolved, limits)?;
+    output_files::clear_leftovers(paths.iter().map(PathBuf::as_path));
+    let mut missing = Vec::new();
+    for ((path, time_s), frame) in paths.iter().zip(times_s).zip(args.frames.frames()) {
         scene.resolved.scene.time_s = time_s;
-        let path = args.output.path(frame);
-        if !(args.skip_existing && is_rendered(&path, &scene.resolved.hash())) {
-            missing.push(moment);
+        if !(args.skip_existing && is_rendered(path, &scene.resolved.hash())) {
+            missing.push((*frame, time_s, path));
         }
     }
     for note in &scene.notes {
-        eprintln!("note: {note}");
+        say(format!("note: {note}"));
     }
-    if !missing.is_empty() {
+    if let Some((_, _, path)) = missing.first() {
+        // Frames that are all there need no place that can be written to.
+        files::check_place(path)?;
         let mut renderer = Renderer::new(config)?;
-        let progress = progress(missing.len());
+        let mut batch = Batch::new(missing.len());
         let mut last = None;
-        for (frame, time_s) in &missing {
-            let path = args.output.path(*frame);
-            let result = one(&mut renderer, &scene.resolved, &mut last, *time_s, &path);
-            if result.is_err() {
-                progress.abandon();
-                eprintln!("frame {frame} failed");
+        for &(frame, time_s, path) in &missing {
+            batch.begin(frame, path);
+            match one(&mut renderer, &scene.resolved, &mut last, time_s, path) {
+                Ok(warnings) => batch.end(frame, path, &warnings),
+                Err(error) => {
+                    batch.finish();
+                    batch.failed(frame);
+                    return Err(error);
+                }
             }
-            result?;
-            progress.inc(1);
         }
-        progress.finish_and_clear();
+        batch.finish();
     }
-    let skipped = frames.len() - missing.len();
+    let skipped = paths.len() - missing.len();
     let (rendered, elapsed) = (missing.len(), start.elapsed());
-    eprint!("{}", summary::of_animation(rendered, skipped, elapsed));
+    say(summary::of_animation(rendered, skipped, elapsed));
     Ok(())
 }
 
-/// Every frame with its time, checked before the first is rendered.
+/// The file of every frame.
+fn frame_paths(args: &AnimateArgs) -> Vec<PathBuf> {
+    let frames = args.frames.frames().iter();
+    frames.map(|frame| args.output.path(*frame)).collect()
+}
+
+/// The time of every frame, checked before the first is rendered.
 fn frame_times(
     args: &AnimateArgs,
     resolved: &ResolvedScene,
     limits: &Limits,
-) -> Result<Vec<(u32, f64)>, CliError> {
-    let frame_times: Vec<(u32, f64)> = args
-        .frames
-        .frames()
-        .iter()
-        .map(|&frame| (frame, time_of(resolved.scene.time_s, frame, args.fps)))
-        .collect();
-    // Checking the last frame is enough: it is the latest, and frames differ only in time.
-    if let Some((_, time_s)) = frame_times.last() {
-        let mut last = resolved.scene.clone();
-        last.time_s = *time_s;
-        methods::validate(&last, limits).map_err(|error| CliError::Scene {
-            file: args.scene.scene.display().to_string(),
+) -> Result<Vec<f64>, CliError> {
+    let time_of = |frame: &i64| time_of(resolved.scene.time_s, *frame, args.fps);
+    let frames = args.frames.frames();
+    // Frames differ only in time, so checking the earliest and the latest is enough.
+    for frame in frames.first().into_iter().chain(frames.last()) {
+        let mut scene = resolved.scene.clone();
+        scene.time_s = time_of(frame);
+        methods::validate(&scene, limits).map_err(|error| CliError::Scene {
+            file: format!("{}, frame {frame}", args.scene.scene.display()),
             error,
         })?;
     }
-    Ok(frame_times)
+    Ok(frames.iter().map(time_of).collect())
 }
 
 /// Whether `path` is a complete picture of this scene at this time, by the scene's hash in its metadata.
@@ -140,14 +146,14 @@ fn is_rendered(path: &Path, scene_hash: &str) -> bool {
         .is_some_and(|hash| hash == scene_hash)
 }
 
-/// Renders the frame at `time_s` to a file. What does not depend on time is reused from the previous frame, if there is one.
+/// Renders the frame at `time_s` to a file, and returns its warnings. What does not depend on time is reused from the previous frame, if there is one.
 fn one(
     renderer: &mut Renderer,
     resolved: &ResolvedScene,
     last: &mut Option<Prepared>,
     time_s: f64,
     path: &Path,
-) -> Result<(), CliError> {
+) -> Result<Vec<Warning>, CliError> {
     let start = Instant::now();
     let prepared = match last.take() {
         Some(last) => last.at(time_s),
@@ -159,17 +165,6 @@ fn one(
     };
     let prepared = last.insert(prepared.map_err(RenderError::from)?);
     let picture = picture::make(renderer, prepared, start)?;
-    files::write_whole(path, &picture.bytes)
-}
-
-/// A progress bar on stderr if that is a terminal.
-fn progress(count: usize) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {eta} left")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    let bar = ProgressBar::new(count as u64).with_style(style);
-    bar.enable_steady_tick(Duration::from_millis(500));
-    bar
+    files::write_whole(path, &picture.bytes)?;
+    Ok(picture.stats.warnings)
 }

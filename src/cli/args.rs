@@ -1,12 +1,15 @@
 //! The command line's syntax.
 
+use std::io::{self, IsTerminal};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use super::error::CliError;
+use super::error::{CliError, EXIT_REFUSED};
 use super::{
-    accuracy, animate, calibrate, experiment, hard_cases, health, plan, render, selfcheck, serve,
+    accuracy, animate, calibrate, device_select, experiment, hard_cases, health, notes, plan,
+    render, selfcheck, serve,
 };
 use crate::config::{Limits, RenderConfig, ServeConfig};
 
@@ -55,12 +58,45 @@ pub enum Command {
 
 /// The program: reads the command line, runs it, and prints errors to stderr.
 pub fn main() -> ExitCode {
-    match run(Cli::parse()) {
+    device_select::without_device_select();
+    let done = match Cli::try_parse() {
+        Ok(cli) => run(cli),
+        Err(answer) if answer.use_stderr() => {
+            notes::say(in_colours(&answer));
+            notes::flush();
+            return ExitCode::from(EXIT_REFUSED);
+        }
+        Err(help) => print_help(&help),
+    };
+    let code = match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            notes::say(format!("error: {error}"));
             ExitCode::from(error.exit_code())
         }
+    };
+    notes::flush();
+    code
+}
+
+/// An error of the command line, in colours if stderr shows them.
+fn in_colours(answer: &clap::Error) -> String {
+    let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let text = answer.render();
+    if io::stderr().is_terminal() && !is_plain {
+        text.ansi().to_string()
+    } else {
+        text.to_string()
+    }
+}
+
+/// Prints a help text or the version, a result like any other.
+fn print_help(help: &clap::Error) -> Result<(), CliError> {
+    match help.print() {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(CliError::write(Path::new("stdout"), error))
+        }
+        _ => Ok(()),
     }
 }
 

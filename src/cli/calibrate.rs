@@ -6,7 +6,8 @@ use clap::Args;
 use tokio_util::sync::CancellationToken;
 
 use super::error::CliError;
-use super::files;
+use super::files::{self, Destination};
+use super::notes::say;
 use super::progress::Progress;
 use crate::config::RenderConfig;
 use crate::lab::calibrate::{self, MeasureError};
@@ -26,7 +27,7 @@ pub struct CalibrateArgs {
 ///
 /// If the GPU fails or gives no times, or if the file cannot be written.
 pub fn run(args: &CalibrateArgs, config: &RenderConfig) -> Result<(), CliError> {
-    files::check_place(&args.output)?;
+    Destination::File(args.output.clone()).check()?;
     let mut renderer = Renderer::new(config)?;
     let progress = Progress::new();
     let calibration = calibrate::calibration(
@@ -42,13 +43,13 @@ pub fn run(args: &CalibrateArgs, config: &RenderConfig) -> Result<(), CliError> 
     })?;
     progress.finish();
     files::write_whole(&args.output, files::json(&calibration).as_bytes())?;
-    eprintln!(
+    say(format!(
         "{}: {} passes on {}; true errors are at most {:.2} times the estimate\nuse it with --calibration {} or CAUSTICA_CALIBRATION",
         args.output.display(),
         calibration.passes.len(),
         calibration.adapter,
         calibration.error_margin,
         args.output.display(),
-    );
+    ));
     Ok(())
 }

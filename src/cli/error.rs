@@ -106,20 +106,46 @@ impl CliError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) | Self::Scene { .. } | Self::Encode(_) | Self::Study(_) => EXIT_REFUSED,
-            Self::Read { error, .. } => match error.kind() {
-                io::ErrorKind::NotFound | io::ErrorKind::IsADirectory => EXIT_REFUSED,
-                _ => EXIT_RETRY,
-            },
+            Self::Read { error, .. } | Self::Write { error, .. } => file_exit_code(error),
             Self::Render(RenderError::Gpu(error)) | Self::Gpu(error) => gpu_exit_code(error),
             Self::Render(RenderError::Cancelled) => EXIT_RETRY,
             Self::Render(_) => EXIT_REFUSED,
-            Self::Write { .. }
-            | Self::SelfCheck { .. }
+            Self::SelfCheck { .. }
             | Self::HardCases { .. }
             | Self::NotReady { .. }
             | Self::Serve(_) => EXIT_RETRY,
         }
     }
+}
+
+/// [`EXIT_REFUSED`] if the system will say the same again; 1 if the reason may pass, as a full disk does.
+fn file_exit_code(error: &io::Error) -> u8 {
+    use io::ErrorKind as Kind;
+    let is_permanent = matches!(
+        error.kind(),
+        Kind::NotFound
+            | Kind::PermissionDenied
+            | Kind::ReadOnlyFilesystem
+            | Kind::NotADirectory
+            | Kind::IsADirectory
+            | Kind::InvalidFilename
+            | Kind::InvalidInput
+            | Kind::InvalidData
+            | Kind::FileTooLarge
+            | Kind::NotSeekable
+            | Kind::Unsupported
+    );
+    if is_permanent || is_link_in_a_circle(error) {
+        EXIT_REFUSED
+    } else {
+        EXIT_RETRY
+    }
+}
+
+/// ELOOP, for which the standard library has no stable name.
+fn is_link_in_a_circle(error: &io::Error) -> bool {
+    let code = if cfg!(target_os = "linux") { 40 } else { 62 };
+    cfg!(unix) && error.raw_os_error() == Some(code)
 }
 
 /// A call that the driver refused will be refused again; all other errors may be temporary.

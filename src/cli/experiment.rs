@@ -8,6 +8,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::accuracy::cache_folder;
 use super::error::CliError;
+use super::notes::say;
 use super::progress::bar;
 use crate::config::RenderConfig;
 use crate::lab::experiment::{self, ExperimentError, Settings};
@@ -149,7 +150,7 @@ pub fn run(args: &ExperimentArgs, config: &RenderConfig) -> Result<(), CliError>
     .map_err(failed)?;
     progress.finish_and_clear();
     for file in experiment::write(&args.output, &found).map_err(failed)? {
-        eprintln!("{}", file.display());
+        say(file.display().to_string());
     }
     Ok(())
 }
@@ -157,6 +158,7 @@ pub fn run(args: &ExperimentArgs, config: &RenderConfig) -> Result<(), CliError>
 fn failed(error: ExperimentError) -> CliError {
     match error {
         ExperimentError::Render(error) => CliError::Render(error),
+        ExperimentError::Write { path, reason } => CliError::write(&path, reason),
         other => CliError::Study(other.to_string()),
     }
 }

@@ -1,69 +1,119 @@
-//! Writes files atomically: a file exists complete or not at all.
+//! Where results go: files, written whole by [`output_files`], or stdout.
 
-use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::error::CliError;
+use super::notes;
+use crate::output_files;
 use crate::scene::ImageFormat;
 
-/// Writes `bytes` to a temporary file beside `path` and renames it, so that no reader ever sees a partial file.
+/// Where a result goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Destination {
+    /// Standard output: `-`, or a name such as `/dev/stdout`.
+    Stdout,
+    /// A file, device or pipe.
+    File(PathBuf),
+}
+
+impl Destination {
+    /// The destination that a user means by `path`.
+    pub fn of(path: &Path) -> Self {
+        if path == Path::new("-") || output_files::is_stdout(path) {
+            Self::Stdout
+        } else {
+            Self::File(path.to_owned())
+        }
+    }
+
+    /// The image format that the name asks for. `None` if it asks for none: stdout, and devices and pipes without an extension.
+    ///
+    /// # Errors
+    ///
+    /// [`CliError::Usage`] for a file whose name does not end in `.png` or `.exr`.
+    pub fn format(&self) -> Result<Option<ImageFormat>, CliError> {
+        let Self::File(path) = self else {
+            return Ok(None);
+        };
+        let is_stream =
+            std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir());
+        if is_stream && path.extension().is_none() {
+            return Ok(None);
+        }
+        format_of(path).map(Some)
+    }
+
+    /// Refuses a place that cannot be written to, before time is spent on rendering, and removes what a killed run left there.
+    ///
+    /// # Errors
+    ///
+    /// As [`check_place`].
+    pub fn check(&self) -> Result<(), CliError> {
+        match self {
+            Self::Stdout => Ok(()),
+            Self::File(path) => {
+                check_place(path)?;
+                output_files::clear_leftovers([path.as_path()]);
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes a result.
+    ///
+    /// # Errors
+    ///
+    /// [`CliError::Write`].
+    pub fn write(&self, bytes: &[u8]) -> Result<(), CliError> {
+        match self {
+            Self::Stdout => print_bytes(bytes),
+            Self::File(path) => write_whole(path, bytes),
+        }
+    }
+
+    /// The name for messages.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Stdout => "stdout".to_owned(),
+            Self::File(path) => path.display().to_string(),
+        }
+    }
+}
+
+/// Writes `bytes` to the file that `path` leads to: whole or not at all, except where [`output_files`] has to write in place.
 ///
 /// # Errors
 ///
-/// [`CliError::Write`]; the temporary file is removed.
+/// [`CliError::Write`].
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    let temporary = temporary_beside(path)?;
-    let written = File::create(&temporary)
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&temporary, path));
-    written.map_err(|error| {
-        // The temporary file may not exist.
-        let _ = fs::remove_file(&temporary);
-        CliError::write(path, error)
-    })
-}
-
-/// A name in the same directory that no other process uses.
-fn temporary_beside(path: &Path) -> Result<PathBuf, CliError> {
-    let Some(name) = path.file_name() else {
-        return Err(CliError::Usage(format!(
-            "{} is not the name of a file",
-            path.display()
-        )));
-    };
-    let mut temporary = std::ffi::OsString::from(".");
-    temporary.push(name);
-    temporary.push(format!(".{}.tmp", std::process::id()));
-    Ok(path.with_file_name(temporary))
+    output_files::write(path, bytes).map_err(|error| CliError::write(path, error))
 }
 
 /// Refuses a path that cannot be written to, before time is spent on rendering.
 ///
 /// # Errors
 ///
-/// [`CliError::Usage`] when the directory of `path` does not exist, or `path` is a directory.
+/// [`CliError::Usage`] when the directory of the file does not exist, or `path` is a directory; [`CliError::Write`] for all other
+/// reasons.
 pub fn check_place(path: &Path) -> Result<(), CliError> {
-    let parent = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
+    let refused = |reason: String| {
+        let path = path.display();
+        Err(CliError::Usage(format!("cannot write {path}: {reason}")))
+    };
+    let failed = |error| CliError::write(path, error);
+    if path.is_dir() {
+        return refused("it is a directory; the name of a file is needed".to_owned());
+    }
+    let target = output_files::target_of(path).map_err(failed)?;
+    let folder = match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    if !parent.is_dir() {
-        let message = format!(
-            "cannot write {}: there is no directory {}",
-            path.display(),
-            parent.display()
-        );
-        return Err(CliError::Usage(message));
+    if !folder.is_dir() {
+        return refused(format!("there is no directory {}", folder.display()));
     }
-    if path.is_dir() {
-        let message = format!(
-            "cannot write {}: it is a directory; the name of a file is needed",
-            path.display()
-        );
-        return Err(CliError::Usage(message));
-    }
-    Ok(())
+    output_files::check(path).map_err(failed)
 }
 
 /// The image format of a file's extension.
@@ -89,11 +139,14 @@ pub fn format_of(path: &Path) -> Result<ImageFormat, CliError> {
 ///
 /// [`CliError::Write`] for anything else.
 pub fn print(text: &str) -> Result<(), CliError> {
+    print_bytes(text.as_bytes())
+}
+
+fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
+    // On a terminal, the result appears after what was said before it.
+    notes::flush();
     let mut stdout = io::stdout().lock();
-    match stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-    {
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(CliError::write(Path::new("stdout"), error))
         }

@@ -1,32 +1,35 @@
-//! Frame numbers (`0-59`, `1-20:4,30`) and file name patterns (`frame.%04d.png`).
+//! Frame numbers: `0-59`, `-10--1`, `1-20x4,30`.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::fmt::Write;
 use std::str::FromStr;
 
 /// Most frames of one command.
 pub const MAX_FRAMES: usize = 1_000_000;
 
-/// Widest number of a pattern, digits.
-const MAX_WIDTH: usize = 20;
+/// Largest frame number, and the smallest without its sign.
+pub const LARGEST_FRAME: i64 = 9_999_999_999;
+
+/// Most ranges that are listed in a message.
+const MAX_LISTED: usize = 20;
 
 /// Frame numbers, ascending, each once.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FrameSet(Vec<u32>);
+pub struct FrameSet(Vec<i64>);
 
 impl FrameSet {
     /// The frames.
-    pub fn frames(&self) -> &[u32] {
+    pub fn frames(&self) -> &[i64] {
         &self.0
     }
 }
 
-/// Why a text is not a frame set or not a pattern.
+/// Why a text is not a frame set.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FramesError {
     /// A part that is not a frame or range.
     #[error(
-        "`{0}` is not a frame or range; accepted: `30`, `0-59`, `1-20:4` (every 4th), joined by commas"
+        "`{0}` is not a frame or range; accepted: `30`, `0-59`, `-10--1`, `1-20x4` or `1-20:4` (every 4th), joined by commas"
     )]
     Part(String),
     /// A range that runs backwards.
@@ -35,14 +38,14 @@ pub enum FramesError {
     /// A step of zero.
     #[error("the range `{0}` has a step of 0; accepted: 1 or more")]
     Step(String),
+    /// A number beyond [`LARGEST_FRAME`].
+    #[error(
+        "`{0}` has a number with more than ten digits; accepted: -{LARGEST_FRAME} … {LARGEST_FRAME}"
+    )]
+    TooFar(String),
     /// Too many frames.
     #[error("there are more than {MAX_FRAMES} frames; accepted: at most {MAX_FRAMES}")]
     TooMany,
-    /// A pattern without its number, or with several.
-    #[error(
-        "`{0}` does not have a frame number exactly once; accepted: a name such as `frame.%04d.png`"
-    )]
-    Pattern(String),
 }
 
 impl FromStr for FrameSet {
@@ -64,75 +67,77 @@ impl FromStr for FrameSet {
 }
 
 /// First, last and step of one part.
-fn range(part: &str) -> Result<(u32, u32, usize), FramesError> {
-    let number = |text: &str| -> Result<u32, FramesError> {
-        // `parse` would take a sign.
-        let is_digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-        match text.parse() {
-            Ok(number) if is_digits => Ok(number),
-            _ => Err(FramesError::Part(part.to_owned())),
+fn range(part: &str) -> Result<(i64, i64, usize), FramesError> {
+    let refused = || FramesError::Part(part.to_owned());
+    // A number with its sign, and the text after it.
+    let number = |text: &str| -> Result<(i64, String), FramesError> {
+        let digits = text.strip_prefix('-').unwrap_or(text);
+        let end = digits.find(|c: char| !c.is_ascii_digit());
+        let (digits, rest) = digits.split_at(end.unwrap_or(digits.len()));
+        if digits.is_empty() {
+            return Err(refused());
         }
+        let too_far = || FramesError::TooFar(part.to_owned());
+        let size: i64 = digits.parse().map_err(|_| too_far())?;
+        if size > LARGEST_FRAME {
+            return Err(too_far());
+        }
+        let number = if text.starts_with('-') { -size } else { size };
+        Ok((number, rest.to_owned()))
     };
-    let Some((first, rest)) = part.split_once('-') else {
-        let frame = number(part)?;
-        return Ok((frame, frame, 1));
+    let (first, rest) = number(part)?;
+    if rest.is_empty() {
+        return Ok((first, first, 1));
+    }
+    let (last, rest) = number(rest.strip_prefix('-').ok_or_else(refused)?)?;
+    let step = match rest.strip_prefix(['x', ':']) {
+        Some(step) if !step.starts_with('-') => {
+            let (step, rest) = number(step)?;
+            let is_whole = rest.is_empty();
+            usize::try_from(step).ok().filter(|_| is_whole)
+        }
+        None if rest.is_empty() => Some(1),
+        _ => None,
     };
-    let (last, step) = match rest.split_once(':') {
-        Some((last, step)) => (number(last)?, number(step)?),
-        None => (number(rest)?, 1),
-    };
-    let first = number(first)?;
+    let step = step.ok_or_else(refused)?;
     if first > last {
         return Err(FramesError::Backwards(part.to_owned()));
     }
     if step == 0 {
         return Err(FramesError::Step(part.to_owned()));
     }
-    Ok((first, last, step as usize))
+    Ok((first, last, step))
 }
 
-/// A file name with a place for the frame number: `%d`, or `%04d` for at least four digits.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FramePattern {
-    before: String,
-    width: usize,
-    after: String,
-}
-
-impl FramePattern {
-    /// The file of a frame.
-    pub fn path(&self, frame: u32) -> PathBuf {
-        let Self {
-            before,
-            width,
-            after,
-        } = self;
-        PathBuf::from(format!("{before}{frame:0width$}{after}"))
-    }
-}
-
-impl FromStr for FramePattern {
-    type Err = FramesError;
-
-    fn from_str(text: &str) -> Result<Self, FramesError> {
-        let refused = || FramesError::Pattern(text.to_owned());
-        let (before, rest) = text.split_once('%').ok_or_else(refused)?;
-        let (digits, after) = rest.split_once('d').ok_or_else(refused)?;
-        let width = match digits.strip_prefix('0') {
-            None if digits.is_empty() => 1,
-            Some(digits) if digits.bytes().all(|b| b.is_ascii_digit()) => {
-                digits.parse().map_err(|_| refused())?
-            }
-            _ => return Err(refused()),
+/// Ascending frames as `--frames` reads them: `0-2, 7, 10-40x10`. Of many ranges, the first twenty.
+pub fn in_ranges(frames: &[i64]) -> String {
+    let mut text = String::new();
+    let mut rest = frames;
+    for listed in 0.. {
+        let Some((&first, after)) = rest.split_first() else {
+            break;
         };
-        let is_in_name = !after.contains(['/', '%']) && Path::new(text).file_name().is_some();
-        if width == 0 || width > MAX_WIDTH || !is_in_name {
-            return Err(refused());
+        if listed > 0 {
+            text.push_str(", ");
         }
-        Ok(Self {
-            before: before.to_owned(),
-            width,
-            after: after.to_owned(),
-        })
+        if listed == MAX_LISTED {
+            let _ = write!(text, "… ({} in all)", frames.len());
+            break;
+        }
+        let step = after.first().map_or(1, |next| next - first);
+        let steps = after
+            .iter()
+            .zip(1..)
+            .take_while(|(frame, count)| **frame == first + count * step);
+        let count = steps.count();
+        let last = first + count as i64 * step;
+        let _ = match (step, count) {
+            (1, 1..) => write!(text, "{first}-{last}"),
+            (_, 2..) => write!(text, "{first}-{last}x{step}"),
+            _ => write!(text, "{first}"),
+        };
+        let is_single = count == 0 || (step > 1 && count == 1);
+        rest = if is_single { after } else { &after[count..] };
     }
+    text
 }

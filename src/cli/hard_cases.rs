@@ -10,6 +10,7 @@ use super::progress::bar;
 use super::summary::{adapter, columns};
 use crate::config::RenderConfig;
 use crate::lab::hard_cases::{self, Case, Outcome, Settings, Truths, page};
+use crate::output_files;
 use crate::render::Renderer;
 
 /// Which cases to run, and where to write the page.
@@ -108,14 +109,16 @@ pub fn in_words(outcomes: &[Outcome]) -> String {
 fn write(folder: &std::path::Path, outcomes: &[Outcome], on: &str) -> Result<(), CliError> {
     let pictures = folder.join("hard-cases");
     std::fs::create_dir_all(&pictures).map_err(|e| CliError::write(&pictures, e))?;
+    let picture_of = |outcome: &Outcome| pictures.join(format!("{}.png", outcome.case.name));
+    let page_path = folder.join("hard-cases.md");
+    let mut paths: Vec<PathBuf> = outcomes.iter().map(picture_of).collect();
+    paths.push(page_path.clone());
+    output_files::clear_leftovers(paths.iter().map(PathBuf::as_path));
     for outcome in outcomes {
         if let Some(bytes) = page::thumbnail(outcome) {
-            files::write_whole(
-                &pictures.join(format!("{}.png", outcome.case.name)),
-                &bytes?,
-            )?;
+            files::write_whole(&picture_of(outcome), &bytes?)?;
         }
     }
     let text = page::markdown(outcomes, on, "hard-cases");
-    files::write_whole(&folder.join("hard-cases.md"), text.as_bytes())
+    files::write_whole(&page_path, text.as_bytes())
 }

@@ -1,16 +1,17 @@
 //! `caustica render`: one scene, one file.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
 
 use super::error::CliError;
+use super::files::{self, Destination};
+use super::notes::say;
 use super::scene_flags::SceneArgs;
-use super::{files, picture, scene_file, summary};
+use super::{picture, scene_file, summary};
 use crate::config::{Limits, RenderConfig};
 use crate::render::{Prepared, RenderError, Renderer};
-use crate::stats::Stats;
 
 /// What to render, and where to write it.
 #[derive(Clone, Debug, Args)]
@@ -18,7 +19,7 @@ pub struct RenderArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// File to write; .png or .exr decides the format.
+    /// File to write; .png or .exr decides the format. `-` is stdout, with the format of `--format` or of the scene.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// File to write the statistics to (JSON); `-` is stdout.
@@ -30,38 +31,29 @@ pub struct RenderArgs {
 ///
 /// # Errors
 ///
-/// Anything from a bad scene to a full disk. An existing file is then unchanged.
+/// Anything from a bad scene to a full disk. An existing file is then unchanged, unless it has to be written in place
+/// ([`crate::output_files`]).
 pub fn run(args: &RenderArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let start = Instant::now();
-    let format = files::format_of(&args.output)?;
-    files::check_place(&args.output)?;
-    if let Some(path) = stats_file(args) {
-        files::check_place(path)?;
+    let output = Destination::of(&args.output);
+    let stats = args.stats.as_deref().map(Destination::of);
+    if output == Destination::Stdout && stats == Some(Destination::Stdout) {
+        return Err(CliError::Usage(
+            "--output and --stats are both stdout; accepted: stdout for one of them".to_owned(),
+        ));
     }
-    let scene = scene_file::load(&args.scene, Some(format), limits)?;
+    let format = output.format()?;
+    for place in std::iter::once(&output).chain(&stats) {
+        place.check()?;
+    }
+    let scene = scene_file::load(&args.scene, format, limits)?;
     let prepared = Prepared::new(scene.resolved).map_err(RenderError::from)?;
     let mut renderer = Renderer::new(config)?;
     let picture = picture::make(&mut renderer, &prepared, start)?;
-    files::write_whole(&args.output, &picture.bytes)?;
-    if args.stats.is_some() {
-        write_stats(stats_file(args), &picture.stats)?;
+    output.write(&picture.bytes)?;
+    if let Some(stats) = stats {
+        stats.write(files::json(&picture.stats).as_bytes())?;
     }
-    eprint!(
-        "{}",
-        summary::of_picture(&picture, &args.output, &scene.notes)
-    );
+    say(summary::of_picture(&picture, &output.name(), &scene.notes));
     Ok(())
-}
-
-/// The file for the statistics, unless they go to stdout.
-fn stats_file(args: &RenderArgs) -> Option<&Path> {
-    args.stats.as_deref().filter(|path| *path != Path::new("-"))
-}
-
-fn write_stats(path: Option<&Path>, stats: &Stats) -> Result<(), CliError> {
-    let json = files::json(stats);
-    match path {
-        Some(path) => files::write_whole(path, json.as_bytes()),
-        None => files::print(&json),
-    }
 }

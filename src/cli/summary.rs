@@ -1,21 +1,20 @@
 //! Summaries of frames for a terminal.
 
 use std::fmt::Write;
-use std::path::Path;
 use std::time::Duration;
 
 use super::picture::Picture;
 use crate::stats::{AccuracyStats, AdapterStats, ChosenDials, Stats};
 
-/// The path of the picture, and its cost.
-pub fn of_picture(picture: &Picture, path: &Path, notes: &[String]) -> String {
+/// Where the picture is, and its cost.
+pub fn of_picture(picture: &Picture, place: &str, notes: &[String]) -> String {
     let [width, height] = picture.size;
     let stats = &picture.stats;
     let file_bytes = bytes(picture.bytes.len() as u64);
     let mut rows = vec![
         row(
             "picture",
-            format!("{}, {width} × {height}, {file_bytes}", path.display()),
+            format!("{place}, {width} × {height}, {file_bytes}"),
         ),
         row("adapter", adapter(&stats.adapter)),
     ];
@@ -52,8 +51,9 @@ pub fn of_picture(picture: &Picture, path: &Path, notes: &[String]) -> String {
 /// The number of frames rendered and skipped.
 pub fn of_animation(rendered: usize, skipped: usize, elapsed: Duration) -> String {
     let seconds = elapsed.as_secs_f64();
+    let frames = if rendered == 1 { "frame" } else { "frames" };
     format!(
-        "{rendered} frames rendered, {skipped} skipped because their files exist, in {seconds:.1} s\n"
+        "{rendered} {frames} rendered, {skipped} skipped because their files exist, in {seconds:.1} s"
     )
 }
 

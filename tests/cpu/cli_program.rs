@@ -1,6 +1,6 @@
 //! The program itself: exit codes, messages on stderr, and `health` of a foreign service.
 
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::net::TcpListener;
 use std::path::Path;
 use std::process::{Command as Process, Output};
@@ -35,7 +35,8 @@ fn exit_codes_say_whether_a_retry_is_worth_it() {
         budget_bytes: 1,
     };
     let gpu = |error: GpuError| CliError::Render(RenderError::Gpu(error));
-    let not_found = || std::io::Error::from(std::io::ErrorKind::NotFound);
+    let written = |kind: ErrorKind| CliError::write(Path::new("s"), kind.into());
+    let not_found = || std::io::Error::from(ErrorKind::NotFound);
     let table = [
         (CliError::Render(RenderError::Scene(scene())), 2),
         (CliError::Render(over), 2),
@@ -46,7 +47,20 @@ fn exit_codes_say_whether_a_retry_is_worth_it() {
             CliError::read(Path::new("s"), std::io::Error::other("disk")),
             1,
         ),
-        (CliError::write(Path::new("s"), not_found()), 1),
+        (
+            CliError::read(Path::new("s"), ErrorKind::PermissionDenied.into()),
+            2,
+        ),
+        (written(ErrorKind::NotFound), 2),
+        (written(ErrorKind::PermissionDenied), 2),
+        (written(ErrorKind::ReadOnlyFilesystem), 2),
+        (written(ErrorKind::NotADirectory), 2),
+        (written(ErrorKind::IsADirectory), 2),
+        (written(ErrorKind::InvalidFilename), 2),
+        (written(ErrorKind::StorageFull), 1),
+        (written(ErrorKind::QuotaExceeded), 1),
+        (written(ErrorKind::Interrupted), 1),
+        (written(ErrorKind::Other), 1),
         (CliError::Render(RenderError::Cancelled), 1),
         (gpu(GpuError::DeviceLost(String::new())), 1),
         (gpu(GpuError::OutOfMemory(String::new())), 1),
@@ -107,10 +121,20 @@ fn an_animation_beyond_the_range_of_time_is_refused_before_it_starts() {
     let said = String::from_utf8(out.stderr).unwrap();
     assert_eq!(out.status.code(), Some(2), "{said}");
     assert!(said.contains("/time_s"), "{said}");
+    assert!(said.contains("scene.json, frame 59"), "{said}");
+
+    // The first frame can be the one that is beyond the range.
+    let text = text.replace("999999999999.5", "-999999999999.5");
+    folder.write("scene.json", &text);
+    let words = words.map(|word| if word == "0-59" { "-59-0" } else { word });
+    let out = program(&words);
+    let said = String::from_utf8(out.stderr).unwrap();
+    assert_eq!(out.status.code(), Some(2), "{said}");
+    assert!(said.contains("scene.json, frame -59"), "{said}");
 }
 
 /// A picture that says it is of the scene in `file` at `frame`.
-fn picture_of(file: &Path, frame: u32) -> Vec<u8> {
+pub(crate) fn picture_of(file: &Path, frame: i64) -> Vec<u8> {
     let args = SceneArgs {
         scene: file.to_owned(),
         overrides: SceneOverrides::default(),
@@ -153,6 +177,8 @@ fn an_animation_whose_files_are_there_needs_no_gpu() {
         let bytes = picture_of(&scene, frame);
         std::fs::write(folder.0.join(format!("f.{frame}.exr")), bytes).unwrap();
     }
+    let left_over = ".f.4.exr.Ab3dE6.tmp";
+    folder.write(left_over, "half a picture");
     let pattern = folder.0.join("f.%d.exr");
     let pattern = pattern.to_str().unwrap();
     let scene = scene.to_str().unwrap();
@@ -171,6 +197,8 @@ fn an_animation_whose_files_are_there_needs_no_gpu() {
         said.contains("0 frames rendered, 3 skipped because their files exist"),
         "{said}"
     );
+    let names = folder.names();
+    assert!(!names.contains(&left_over.to_owned()), "{names:?}");
 }
 
 /// A service that gives one answer, and what it was asked.

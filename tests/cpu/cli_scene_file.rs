@@ -248,7 +248,7 @@ fn files_are_written_whole_and_leave_nothing_beside_them() {
 
     fs::create_dir(folder.0.join("taken.png")).unwrap();
     let error = files::write_whole(&folder.0.join("taken.png"), b"new").unwrap_err();
-    assert_eq!(error.exit_code(), 1);
+    assert_eq!(error.exit_code(), 2);
     assert_eq!(
         folder.names(),
         ["taken.png", "x.png"],

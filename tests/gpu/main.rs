@@ -8,6 +8,7 @@
 
 mod accuracy_program;
 mod accuracy_service;
+mod batches;
 mod beam_sets;
 mod camera_layers;
 mod chosen_dials;

@@ -66,8 +66,13 @@ pub enum ExperimentError {
     #[error(transparent)]
     Plot(#[from] crate::lab::study::plot::PlotError),
     /// A file cannot be written.
-    #[error(transparent)]
-    Write(#[from] std::io::Error),
+    #[error("cannot write {}: {reason}", path.display())]
+    Write {
+        /// Which.
+        path: std::path::PathBuf,
+        /// What the system says.
+        reason: std::io::Error,
+    },
 }
 
 /// Renders a scene.

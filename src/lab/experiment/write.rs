@@ -11,6 +11,7 @@ use super::measure::ExperimentError;
 use super::study::{Experiment, MeshResult, TechniqueFigures};
 use crate::lab::study::plot::{LineChart, Plot, PlotError, error_against_time, lines};
 use crate::lab::study::study::{CostFigures, ErrorFigures, Point, Study, Sweep, TruthFigures};
+use crate::output_files::{self, clear_leftovers};
 
 /// Shapes with a section of their own on the page: those of the thesis's tables.
 pub const FEATURED: [&str; 3] = ["teapot", "dolphin", "sphere"];
@@ -136,11 +137,15 @@ pub fn write(folder: &Path, experiment: &Experiment) -> Result<Vec<PathBuf>, Exp
     let mut files = Vec::new();
     let mut put = |name: &str, bytes: &[u8]| -> Result<(), ExperimentError> {
         let path = folder.join(name);
-        std::fs::write(&path, bytes)?;
+        clear_leftovers([path.as_path()]);
+        output_files::write(&path, bytes).map_err(|reason| ExperimentError::Write {
+            path: path.clone(),
+            reason,
+        })?;
         files.push(path);
         Ok(())
     };
-    let mut json = serde_json::to_string_pretty(experiment).map_err(std::io::Error::other)?;
+    let mut json = serde_json::to_string_pretty(experiment).expect("results always serialise");
     json.push('\n');
     put("level_maps.json", json.as_bytes())?;
     put("level_maps.csv", to_csv(experiment).as_bytes())?;

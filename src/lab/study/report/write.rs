@@ -1,8 +1,7 @@
 //! Writes all files of a study into a folder.
 
-use std::ffi::OsString;
-use std::fs::{self, File};
-use std::io::{self, Write};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::csv::to_csv;
@@ -12,6 +11,7 @@ use super::markdown::{ReportLinks, SweepLinks, to_markdown};
 use crate::lab::study::error_images::error_images;
 use crate::lab::study::plot::{convergence, error_against_time};
 use crate::lab::study::study::{Study, StudyImages};
+use crate::output_files::{Pending, clear_leftovers};
 
 /// Writes `study.json`, `study.csv`, `study.md`, `error_time.svg` and `.png`, and for each sweep `convergence_<dial>.svg` and
 /// `.png` and `errors_<dial>.png` into `folder`, which is created if needed. Returns their paths, the report first.
@@ -98,50 +98,15 @@ fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>,
         reason,
     };
     fs::create_dir_all(folder).map_err(|reason| failed(folder, reason))?;
-    let mut moves: Vec<(PathBuf, PathBuf)> = Vec::new();
-    let mut result = Ok(());
-    for (name, bytes) in files {
-        let path = folder.join(name);
-        let aside = aside(folder, name);
-        moves.push((aside.clone(), path.clone()));
-        result = write_file(&aside, bytes).map_err(|reason| failed(&path, reason));
-        // A folder in a file's place would be found only after some files had moved.
-        if result.is_ok() && path.is_dir() {
-            let reason = io::Error::from(io::ErrorKind::IsADirectory);
-            result = Err(failed(&path, reason));
-        }
-        if result.is_err() {
-            break;
-        }
+    let paths: Vec<PathBuf> = files.iter().map(|(name, _)| folder.join(name)).collect();
+    clear_leftovers(paths.iter().map(PathBuf::as_path));
+    let mut ready = Vec::new();
+    for (path, (_, bytes)) in paths.iter().zip(files) {
+        let pending = Pending::new(path, bytes).map_err(|reason| failed(path, reason))?;
+        ready.push((path, pending));
     }
-    if result.is_ok() {
-        for (aside, path) in &moves {
-            result = fs::rename(aside, path).map_err(|reason| failed(path, reason));
-            if result.is_err() {
-                break;
-            }
-        }
+    for (path, pending) in ready {
+        pending.finish().map_err(|reason| failed(path, reason))?;
     }
-    if let Err(error) = result {
-        for (aside, _) in &moves {
-            // Moved already, or never created.
-            let _ = fs::remove_file(aside);
-        }
-        return Err(error);
-    }
-    Ok(moves.into_iter().map(|(_, path)| path).collect())
-}
-
-fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = File::create(path)?;
-    file.write_all(bytes)?;
-    file.sync_all()
-}
-
-/// A name in the folder that no other process uses.
-fn aside(folder: &Path, name: &str) -> PathBuf {
-    let mut aside = OsString::from(".");
-    aside.push(name);
-    aside.push(format!(".{}.tmp", std::process::id()));
-    folder.join(aside)
+    Ok(paths)
 }
