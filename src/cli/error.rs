@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::gpu::GpuError;
+use crate::http::ServeError;
 use crate::image::EncodeError;
 use crate::render::RenderError;
 use crate::scene::SceneError;
@@ -80,9 +81,9 @@ pub enum CliError {
         /// Its answer, or why there was none.
         reason: String,
     },
-    /// The service stopped.
-    #[error("the service stopped: {0}")]
-    Serve(String),
+    /// The service did not start, or stopped.
+    #[error(transparent)]
+    Serve(#[from] ServeError),
 }
 
 impl CliError {
@@ -116,8 +117,9 @@ impl CliError {
             Self::Write { .. }
             | Self::SelfCheck { .. }
             | Self::HardCases { .. }
-            | Self::NotReady { .. }
-            | Self::Serve(_) => EXIT_RETRY,
+            | Self::NotReady { .. } => EXIT_RETRY,
+            Self::Serve(error) if error.is_refusal() => EXIT_REFUSED,
+            Self::Serve(_) => EXIT_RETRY,
         }
     }
 }

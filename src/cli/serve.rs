@@ -1,38 +1,51 @@
 //! `caustica serve`: the HTTP service.
 
-use std::io::IsTerminal as _;
-
-use tracing_subscriber::EnvFilter;
+use std::backtrace::{Backtrace, BacktraceStatus};
+use std::io::{self, IsTerminal as _};
+use std::time::Duration;
 
 use super::error::CliError;
 use crate::config::{Limits, RenderConfig, ServeConfig};
+use crate::http::log::Log;
+use crate::http::{ServeError, serve};
+
+/// At the end, how long to wait for the last lines of the log.
+const LAST_LINES_LIMIT: Duration = Duration::from_secs(1);
 
 /// Serves until a signal ends the process.
 ///
 /// # Errors
 ///
 /// [`CliError::Serve`] if the service cannot start or fails.
-pub fn run(render: RenderConfig, limits: Limits, serve: ServeConfig) -> Result<(), CliError> {
-    start_log(serve.log_json);
-    tokio::runtime::Builder::new_multi_thread()
+pub fn run(render: RenderConfig, limits: Limits, config: ServeConfig) -> Result<(), CliError> {
+    let log = start_log(config.log_json).map_err(ServeError::from)?;
+    let result = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
-        .map_err(|error| CliError::Serve(error.to_string()))?
-        .block_on(crate::http::serve(render, limits, serve))
-        .map_err(|error| CliError::Serve(error.to_string()))
+        .map_err(ServeError::from)
+        .and_then(|runtime| runtime.block_on(serve(render, limits, config)))
+        .map_err(CliError::from);
+    let written = log.flush(LAST_LINES_LIMIT);
+    match result {
+        // The reader of stderr has stalled: writing the error there would never end.
+        Err(error) if !written => std::process::exit(error.exit_code().into()),
+        result => result,
+    }
 }
 
-/// Logs to stderr at level `info` and above, or as `RUST_LOG` says.
-fn start_log(json: bool) {
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info"));
-    let log = tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal());
-    // In a process that has a log already, as in tests, the first one's format stays.
-    let _ = if json {
-        log.json().try_init()
-    } else {
-        log.try_init()
-    };
+/// Logs to stderr, panics too.
+fn start_log(json: bool) -> io::Result<Log> {
+    let log = Log::start(io::stderr())?;
+    let subscriber = log.subscriber(json, io::stderr().is_terminal());
+    // In a process that has a log already, as in tests, the first one stays.
+    if tracing::subscriber::set_global_default(subscriber).is_ok() {
+        std::panic::set_hook(Box::new(|panic| {
+            let trace = Backtrace::capture();
+            match trace.status() {
+                BacktraceStatus::Captured => tracing::error!(%panic, %trace, "panicked"),
+                _ => tracing::error!(%panic, "panicked"),
+            }
+        }));
+    }
+    Ok(log)
 }
