@@ -269,8 +269,11 @@ impl ApiError {
     }
 
     /// From a request that claims to be multipart and is not.
-    pub(super) fn from_multipart_rejection(rejection: &MultipartRejection) -> Self {
-        Self::MalformedBody(rejection.body_text())
+    pub(super) fn from_multipart_rejection(_: &MultipartRejection) -> Self {
+        Self::MalformedBody(
+            "Content-Type has no valid boundary; accepted: multipart/form-data; boundary=…"
+                .to_owned(),
+        )
     }
 
     /// From a caught panic.
