@@ -10,6 +10,7 @@ use super::{
     accuracy, animate, calibrate, experiment, hard_cases, health, plan, render, selfcheck, serve,
 };
 use crate::config::{Limits, RenderConfig, ServeConfig};
+use crate::http::log::{LAST_LINES_LIMIT, Log};
 
 /// Renders water caustics, from the command line or as an HTTP service.
 ///
@@ -59,8 +60,11 @@ pub fn main() -> ExitCode {
     match run(Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // A closed stderr must not change the exit code.
-            let _ = writeln!(std::io::stderr(), "error: {error}");
+            // Neither a closed stderr nor one whose reader has stalled may cost the exit code.
+            if let Ok(mut log) = Log::start(std::io::stderr()) {
+                let _ = log.write_all(format!("error: {error}\n").as_bytes());
+                log.flush(LAST_LINES_LIMIT);
+            }
             ExitCode::from(error.exit_code())
         }
     }

@@ -2,15 +2,11 @@
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::io::{self, IsTerminal as _};
-use std::time::Duration;
 
 use super::error::CliError;
 use crate::config::{Limits, RenderConfig, ServeConfig};
-use crate::http::log::Log;
+use crate::http::log::{LAST_LINES_LIMIT, Log};
 use crate::http::{ServeError, serve};
-
-/// At the end, how long to wait for the last lines of the log.
-const LAST_LINES_LIMIT: Duration = Duration::from_secs(1);
 
 /// Serves until a signal ends the process.
 ///
@@ -23,14 +19,9 @@ pub fn run(render: RenderConfig, limits: Limits, config: ServeConfig) -> Result<
         .enable_all()
         .build()
         .map_err(ServeError::from)
-        .and_then(|runtime| runtime.block_on(serve(render, limits, config)))
-        .map_err(CliError::from);
-    let written = log.flush(LAST_LINES_LIMIT);
-    match result {
-        // The reader of stderr has stalled: writing the error there would never end.
-        Err(error) if !written => std::process::exit(error.exit_code().into()),
-        result => result,
-    }
+        .and_then(|runtime| runtime.block_on(serve(render, limits, config)));
+    log.flush(LAST_LINES_LIMIT);
+    Ok(result?)
 }
 
 /// Logs to stderr, panics too.

@@ -37,6 +37,9 @@ const LAST_HEADER_LIMIT: Duration = Duration::from_secs(1);
 /// Pause after the operating system has refused a connection, usually for lack of files or memory.
 const REFUSED_PAUSE: Duration = Duration::from_millis(100);
 
+/// How often this is logged at most.
+const WARNING_PERIOD: Duration = Duration::from_secs(10);
+
 /// Bounds of all connections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConnectionLimits {
@@ -91,7 +94,7 @@ pub async fn serve(
     let abandoned = CancellationToken::new();
     let _abandons = abandoned.clone().drop_guard();
     let open = Arc::new(Open::new(limits.most));
-    let mut refused = false;
+    let mut warned: Option<Instant> = None;
     loop {
         let accepted = tokio::select! {
             biased;
@@ -102,16 +105,15 @@ pub async fn serve(
             Ok((stream, _)) => stream,
             Err(error) if concerns_one_connection(&error) => continue,
             Err(error) => {
-                if !refused {
+                if warned.is_none_or(|then| then.elapsed() > WARNING_PERIOD) {
                     tracing::warn!(%error, "the system refuses connections; closing those that wait");
+                    warned = Some(Instant::now());
                 }
-                refused = true;
                 open.evict_longest_waiting();
                 tokio::time::sleep(REFUSED_PAUSE).await;
                 continue;
             }
         };
-        refused = false;
         let place = tokio::select! {
             biased;
             () = closing.cancelled() => break,

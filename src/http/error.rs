@@ -172,7 +172,9 @@ pub enum ApiError {
         offered: String,
     },
     /// The body is too large.
-    #[error("the body has more than {limit_bytes} bytes, the limit")]
+    #[error(
+        "the body has more than {limit_bytes} bytes, the limit; an encoded body counts decoded"
+    )]
     BodyTooLarge {
         /// The limit, bytes.
         limit_bytes: usize,

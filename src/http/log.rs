@@ -16,6 +16,9 @@ use tracing_subscriber::fmt::MakeWriter;
 /// Lines that may wait; at some hundred bytes a line, a few megabytes.
 const QUEUE_LINES: usize = 16_384;
 
+/// At the end of the process, how long to wait for the last lines.
+pub const LAST_LINES_LIMIT: Duration = Duration::from_secs(1);
+
 /// Lines lost by all logs of the process, for `/metrics`.
 static DROPPED: AtomicU64 = AtomicU64::new(0);
 

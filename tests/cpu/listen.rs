@@ -100,3 +100,16 @@ fn origins_that_are_none_are_refused() {
     assert!(said.contains("the scheme is missing"), "{said}");
     assert!(said.contains("http://localhost:3000"), "{said}");
 }
+
+#[test]
+fn the_exit_code_does_not_depend_on_a_reader_of_the_error() {
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let status = Command::new(env!("CARGO_BIN_EXE_caustica"))
+        // TEST-NET-1 (RFC 5737) belongs to no machine.
+        .args(["serve", "--listen", "192.0.2.1:0"])
+        .stderr(writer)
+        .status()
+        .unwrap();
+    assert_eq!(status.code(), Some(2), "{status}");
+}
