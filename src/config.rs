@@ -1,9 +1,14 @@
 //! Every setting of the program: command-line flag, environment variable, default.
 
+mod listen;
+mod origin;
+
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+pub use self::listen::{ListenAddress, ListenHost};
+pub use self::origin::CorsOrigin;
 use crate::calibration::Calibration;
 
 /// Which adapters may be used.
@@ -158,9 +163,14 @@ impl Default for Limits {
 /// Settings of `caustica serve`.
 #[derive(Clone, Debug, Args)]
 pub struct ServeConfig {
-    /// Address to listen on.
-    #[arg(long, env = "CAUSTICA_LISTEN", default_value = "127.0.0.1:8080")]
-    pub listen: std::net::SocketAddr,
+    /// Address to listen on: `127.0.0.1:8080`, `[::1]:8080`, `localhost:8080` (IPv4 is tried first), or `:8080` for all interfaces.
+    #[arg(
+        long,
+        env = "CAUSTICA_LISTEN",
+        value_name = "HOST:PORT",
+        default_value = "127.0.0.1:8080"
+    )]
+    pub listen: ListenAddress,
     /// Requests that may wait for the GPU. One more is answered 429.
     #[arg(long, env = "CAUSTICA_QUEUE", default_value_t = 16)]
     pub queue: usize,
@@ -170,6 +180,24 @@ pub struct ServeConfig {
     /// Seconds that `/readyz` answers 503 on shutdown before connections are refused.
     #[arg(long, env = "CAUSTICA_DRAIN_S", default_value_t = 0)]
     pub drain_s: u64,
+    /// Connections open at a time, at least 1. For one more, the connection that has waited longest for a request is closed; if all
+    /// have a request, the new one waits. The limit of open files may lower this number; the log says so.
+    #[arg(long, env = "CAUSTICA_MAX_CONNECTIONS", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_connections: u32,
+    /// Seconds after which a connection without a request is closed, and one whose client does not read its answer. The header of
+    /// a request has to be complete within this time, and within 30 seconds. Longer than the 60 seconds of common load balancers, so that they
+    /// never send a request on a connection that is just being closed.
+    #[arg(long, env = "CAUSTICA_IDLE_TIMEOUT_S", default_value_t = 75, value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    pub idle_timeout_s: u64,
+    /// Origin whose web pages may use the service (CORS), as `http://localhost:3000`, or `*` for all. Repeat it, or separate several
+    /// by commas. Without it, browsers let only the service's own pages read its answers.
+    #[arg(
+        long,
+        env = "CAUSTICA_CORS_ORIGIN",
+        value_name = "ORIGIN",
+        value_delimiter = ','
+    )]
+    pub cors_origin: Vec<CorsOrigin>,
     /// Log as JSON lines.
     #[arg(long, env = "CAUSTICA_LOG_JSON")]
     pub log_json: bool,

@@ -71,6 +71,7 @@
 //! | [`output_files`] | writing files whole; what killed processes leave |
 //! | [`physics`] | formulas in f64, each with its source; [`physics::registry`] pairs them with their twins in `shaders/lib` |
 //! | [`stats`] | the cost of a frame, its energy account and its warnings |
+//! | [`log`] | text on its way to a stream that may block or fail |
 //! | [`config`] | every setting |
 //! | [`calibration`] | what passes cost on one machine, and how far error estimates may be off |
 
@@ -88,6 +89,7 @@ pub mod graph;
 pub mod http;
 pub mod image;
 pub mod lab;
+pub mod log;
 pub mod mesh;
 pub mod methods;
 pub mod output_files;

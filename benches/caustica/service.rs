@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use caustica::config::{Limits, RenderConfig};
 use caustica::gpu_queue::{GpuQueue, GpuState, QueueSettings, RenderBackend};
-use caustica::http::{AppState, serve_on};
+use caustica::http::{AppState, ConnectionLimits, serve_on};
 use caustica::render::Renderer;
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
@@ -121,7 +121,14 @@ impl Running {
         let address = listener.local_addr()?;
         let stop = CancellationToken::new();
         let stopped = stop.clone().cancelled_owned();
-        let served = runtime.spawn(serve_on(listener, state, Duration::ZERO, stopped));
+        let connections = ConnectionLimits::default();
+        let served = runtime.spawn(serve_on(
+            listener,
+            state,
+            connections,
+            Duration::ZERO,
+            stopped,
+        ));
         let mut status = queue.watch();
         let running = Self {
             address,

@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::gpu::GpuError;
+use crate::http::ServeError;
 use crate::image::EncodeError;
 use crate::render::RenderError;
 use crate::scene::SceneError;
@@ -80,9 +81,9 @@ pub enum CliError {
         /// Its answer, or why there was none.
         reason: String,
     },
-    /// The service stopped.
-    #[error("the service stopped: {0}")]
-    Serve(String),
+    /// The service did not start, or stopped.
+    #[error(transparent)]
+    Serve(#[from] ServeError),
 }
 
 impl CliError {
@@ -110,10 +111,9 @@ impl CliError {
             Self::Render(RenderError::Gpu(error)) | Self::Gpu(error) => gpu_exit_code(error),
             Self::Render(RenderError::Cancelled) => EXIT_RETRY,
             Self::Render(_) => EXIT_REFUSED,
-            Self::SelfCheck { .. }
-            | Self::HardCases { .. }
-            | Self::NotReady { .. }
-            | Self::Serve(_) => EXIT_RETRY,
+            Self::SelfCheck { .. } | Self::HardCases { .. } | Self::NotReady { .. } => EXIT_RETRY,
+            Self::Serve(error) if error.is_refusal() => EXIT_REFUSED,
+            Self::Serve(_) => EXIT_RETRY,
         }
     }
 }

@@ -1,38 +1,42 @@
 //! `caustica serve`: the HTTP service.
 
-use std::io::IsTerminal as _;
-
-use tracing_subscriber::EnvFilter;
+use std::backtrace::{Backtrace, BacktraceStatus};
+use std::io::{self, IsTerminal as _};
 
 use super::error::CliError;
 use crate::config::{Limits, RenderConfig, ServeConfig};
+use crate::http::{self, ServeError, serve};
+use crate::log;
 
 /// Serves until a signal ends the process.
 ///
 /// # Errors
 ///
 /// [`CliError::Serve`] if the service cannot start or fails.
-pub fn run(render: RenderConfig, limits: Limits, serve: ServeConfig) -> Result<(), CliError> {
-    start_log(serve.log_json);
-    tokio::runtime::Builder::new_multi_thread()
+pub fn run(render: RenderConfig, limits: Limits, config: ServeConfig) -> Result<(), CliError> {
+    start_log(config.log_json);
+    let served = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
-        .map_err(|error| CliError::Serve(error.to_string()))?
-        .block_on(crate::http::serve(render, limits, serve))
-        .map_err(|error| CliError::Serve(error.to_string()))
+        .map_err(ServeError::from)
+        .and_then(|runtime| runtime.block_on(serve(render, limits, config)));
+    Ok(served?)
 }
 
-/// Logs to stderr at level `info` and above, or as `RUST_LOG` says.
+/// Logs to stderr, panics too. Without a thread for it there is no log.
 fn start_log(json: bool) {
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info"));
-    let log = tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal());
-    // In a process that has a log already, as in tests, the first one's format stays.
-    let _ = if json {
-        log.json().try_init()
-    } else {
-        log.try_init()
+    let Some(log) = log::stderr() else {
+        return;
     };
+    let subscriber = http::log::subscriber(log, json, io::stderr().is_terminal());
+    // In a process that has a log already, as in tests, the first one stays.
+    if tracing::subscriber::set_global_default(subscriber).is_ok() {
+        std::panic::set_hook(Box::new(|panic| {
+            let trace = Backtrace::capture();
+            match trace.status() {
+                BacktraceStatus::Captured => tracing::error!(%panic, %trace, "panicked"),
+                _ => tracing::error!(%panic, "panicked"),
+            }
+        }));
+    }
 }

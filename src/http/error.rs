@@ -1,6 +1,7 @@
 //! All errors and their status: the only file with status codes of failures.
 
 use std::any::Any;
+use std::error::Error;
 
 use axum::extract::multipart::{MultipartError, MultipartRejection};
 use axum::extract::rejection::BytesRejection;
@@ -9,6 +10,7 @@ use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::decode::{self, Undecodable};
 use super::problem::Problem;
 use crate::gpu::GpuError;
 use crate::gpu_queue::JobError;
@@ -90,6 +92,8 @@ problem_kinds! {
     BodyTooLarge = PAYLOAD_TOO_LARGE, "body-too-large", "The body is too large", Request;
     /// 415: the route does not accept the body's media type.
     UnsupportedMediaType = UNSUPPORTED_MEDIA_TYPE, "unsupported-media-type", "The body has an unsupported type", Request;
+    /// 415: the body's `Content-Encoding` is not decoded here; `Accept-Encoding` lists those that are.
+    UnsupportedEncoding = UNSUPPORTED_MEDIA_TYPE, "unsupported-encoding", "The body has an unsupported encoding", Request;
     /// 422: the scene is JSON but not valid.
     InvalidScene = UNPROCESSABLE_ENTITY, "invalid-scene", "The scene is not valid", Request;
     /// 422: the scene exceeds a limit of this installation and has no other error.
@@ -168,7 +172,9 @@ pub enum ApiError {
         offered: String,
     },
     /// The body is too large.
-    #[error("the body has more than {limit_bytes} bytes, the limit")]
+    #[error(
+        "the body has more than {limit_bytes} bytes, the limit; an encoded body counts decoded"
+    )]
     BodyTooLarge {
         /// The limit, bytes.
         limit_bytes: usize,
@@ -180,6 +186,15 @@ pub enum ApiError {
         found: String,
         /// Media types accepted here.
         accepted: &'static str,
+    },
+    /// The body is in an encoding that is not decoded.
+    #[error(
+        "Content-Encoding is {found}; accepted: one of {}, or none",
+        decode::ACCEPTED
+    )]
+    UnsupportedEncoding {
+        /// Encodings of the request.
+        found: String,
     },
     /// The scene is refused.
     #[error(transparent)]
@@ -222,6 +237,7 @@ impl ApiError {
             Self::NotAcceptable { .. } => ProblemKind::NotAcceptable,
             Self::BodyTooLarge { .. } => ProblemKind::BodyTooLarge,
             Self::UnsupportedMediaType { .. } => ProblemKind::UnsupportedMediaType,
+            Self::UnsupportedEncoding { .. } => ProblemKind::UnsupportedEncoding,
             Self::Scene(error) => scene_kind(error),
             Self::Mesh(MeshError::StoreFull { .. }) => ProblemKind::MeshStoreFull,
             Self::Mesh(_) => ProblemKind::InvalidMesh,
@@ -246,17 +262,20 @@ impl ApiError {
 
     /// From a body that was not read in full; `limit_bytes` is the limit it was read under.
     pub(super) fn from_bytes_rejection(rejection: &BytesRejection, limit_bytes: usize) -> Self {
-        Self::from_body_status(rejection.status(), rejection.body_text(), limit_bytes)
+        Self::from_body_status(rejection.status(), rejection, limit_bytes)
     }
 
     /// From a multipart body that is incomplete or malformed.
     pub(super) fn from_multipart(error: &MultipartError, limit_bytes: usize) -> Self {
-        Self::from_body_status(error.status(), error.body_text(), limit_bytes)
+        Self::from_body_status(error.status(), error, limit_bytes)
     }
 
     /// From a request that claims to be multipart and is not.
-    pub(super) fn from_multipart_rejection(rejection: &MultipartRejection) -> Self {
-        Self::MalformedBody(rejection.body_text())
+    pub(super) fn from_multipart_rejection(_: &MultipartRejection) -> Self {
+        Self::MalformedBody(
+            "Content-Type has no valid boundary; accepted: multipart/form-data; boundary=…"
+                .to_owned(),
+        )
     }
 
     /// From a caught panic.
@@ -268,12 +287,22 @@ impl ApiError {
         Self::Panic(message.unwrap_or_else(|| "no message".to_owned()))
     }
 
-    fn from_body_status(status: StatusCode, text: String, limit_bytes: usize) -> Self {
+    fn from_body_status(
+        status: StatusCode,
+        error: &(dyn Error + 'static),
+        limit_bytes: usize,
+    ) -> Self {
         if status == StatusCode::PAYLOAD_TOO_LARGE {
-            Self::BodyTooLarge { limit_bytes }
-        } else {
-            Self::MalformedBody(text)
+            return Self::BodyTooLarge { limit_bytes };
         }
+        // The deepest cause says what happened; those around it only say that the body was being read.
+        let mut cause = error;
+        while let Some(deeper) = cause.source()
+            && !cause.is::<Undecodable>()
+        {
+            cause = deeper;
+        }
+        Self::MalformedBody(cause.to_string())
     }
 }
 
@@ -334,6 +363,12 @@ impl IntoResponse for ApiError {
             response
                 .headers_mut()
                 .insert(header::RETRY_AFTER, HeaderValue::from(seconds));
+        }
+        if matches!(self, Self::UnsupportedEncoding { .. }) {
+            response.headers_mut().insert(
+                header::ACCEPT_ENCODING,
+                HeaderValue::from_static(decode::ACCEPTED),
+            );
         }
         response.extensions_mut().insert(self);
         response

@@ -8,6 +8,7 @@ use metrics::{
 };
 use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 
+use super::connections::CloseReason;
 use super::state::AppState;
 
 /// Upper bounds of the render time histogram, s.
@@ -17,6 +18,9 @@ const RENDER_BUCKETS_S: [f64; 14] = [
 
 const REQUESTS: &str = "caustica_http_requests_total";
 const PROBLEMS: &str = "caustica_http_problems_total";
+const CONNECTIONS: &str = "caustica_connections";
+const CONNECTIONS_CLOSED: &str = "caustica_connections_closed_total";
+const LOG_LINES_DROPPED: &str = "caustica_log_lines_dropped_total";
 const RENDER_SECONDS: &str = "caustica_render_seconds";
 
 /// The recorder of the process. It is installed once, since the `metrics` facade supports only one.
@@ -54,6 +58,19 @@ impl Metrics {
         counter!(PROBLEMS, "type" => urn).increment(1);
     }
 
+    /// Counts a connection in.
+    pub(super) fn connected(self) {
+        gauge!(CONNECTIONS).increment(1.0);
+    }
+
+    /// Counts a connection out. `reason` is given if the service has closed it.
+    pub(super) fn disconnected(self, reason: Option<CloseReason>) {
+        gauge!(CONNECTIONS).decrement(1.0);
+        if let Some(reason) = reason {
+            counter!(CONNECTIONS_CLOSED, "reason" => reason.word()).increment(1);
+        }
+    }
+
     /// Records a finished render, from arrival to the encoded file.
     pub(super) fn rendered(self, took: Duration) {
         histogram!(RENDER_SECONDS).record(took);
@@ -74,6 +91,7 @@ impl Metrics {
         counter!("caustica_level_map_cache_misses_total").absolute(cache.misses);
         counter!("caustica_level_map_cache_evictions_total").absolute(cache.evictions);
         counter!("caustica_device_losses_total").absolute(status.losses);
+        counter!(LOG_LINES_DROPPED).absolute(crate::log::dropped());
         gauge!("caustica_level_map_cache_bytes").set(cache.bytes as f64);
         gauge!("caustica_level_map_cache_entries").set(cache.entries as f64);
         gauge!("caustica_level_map_cache_budget_bytes").set(cache.budget_bytes as f64);
@@ -105,6 +123,11 @@ fn handle() -> &'static PrometheusHandle {
             tracing::warn!("another metrics recorder is installed; /metrics will be empty");
         }
         describe();
+        // These are listed from the start, not from the first event.
+        gauge!(CONNECTIONS).set(0.0);
+        for reason in CloseReason::ALL {
+            counter!(CONNECTIONS_CLOSED, "reason" => reason.word()).absolute(0);
+        }
         handle
     })
 }
@@ -117,6 +140,16 @@ fn describe() {
     describe_counter!(
         PROBLEMS,
         "Problems by type, of answers and of warm-ups of uploads that failed."
+    );
+    describe_gauge!(CONNECTIONS, "Open connections.");
+    describe_counter!(
+        CONNECTIONS_CLOSED,
+        "Connections that the service closed, by reason; idle: no request for too long; evicted: no request, and another \
+         connection needed the place; stalled: the client did not read its answer."
+    );
+    describe_counter!(
+        LOG_LINES_DROPPED,
+        "Log lines lost because stderr was closed, full or too slow."
     );
     describe_histogram!(
         RENDER_SECONDS,

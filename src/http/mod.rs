@@ -4,19 +4,27 @@
 //! * [`routes`]: one resource per file;
 //! * [`state`]: what the routes share;
 //! * [`error`]: all errors with their status codes; [`problem`]: the problem documents they are answered with;
-//! * [`extract`]: request bodies; [`warm`]: the query of an upload; [`accept`]: content negotiation;
+//! * [`extract`]: request bodies; [`decode`]: their encodings; [`warm`]: the query of an upload; [`accept`]: content negotiation;
+//! * [`cors`]: pages of other origins;
 //! * [`observe`]: arrival, deadline, request log and request metrics, around every route; [`metrics`]: the Prometheus side;
 //! * [`openapi`]: the contract, generated from the routes;
-//! * [`server`]: the listening process, from start to graceful shutdown.
+//! * [`server`]: the listening process, from start to graceful shutdown; [`connections`]: their number, and how long one may do
+//!   nothing; [`log`]: what turns events into lines of the log.
 //!
 //! To add a route: a handler with `#[utoipa::path]` in a file under `routes`, a line in [`router`], its problems in
 //! [`problem`], and `BLESS=1 cargo test --test http contract` to write `openapi.yaml`.
 
 pub mod accept;
+pub mod connections;
+pub mod cors;
+pub mod decode;
 pub mod error;
 pub mod extract;
+mod listen;
+pub mod log;
 pub mod metrics;
 pub mod observe;
+mod open_files;
 pub mod openapi;
 pub mod problem;
 pub mod router;
@@ -25,6 +33,7 @@ pub mod server;
 pub mod state;
 pub mod warm;
 
+pub use connections::ConnectionLimits;
 pub use error::{ApiError, ProblemKind};
 pub use openapi::openapi;
 pub use problem::Problem;

@@ -132,21 +132,21 @@ problem_sets! {
     MeshProblems = [UnknownMesh, Internal, DeadlinePassed];
     /// Of the upload of a mesh.
     UploadProblems = [
-        InvalidQuery, MalformedBody, BodyTooLarge, UnsupportedMediaType, InvalidMesh, Internal, DeadlinePassed, MeshStoreFull,
+        InvalidQuery, MalformedBody, BodyTooLarge, UnsupportedMediaType, UnsupportedEncoding, InvalidMesh, Internal, DeadlinePassed, MeshStoreFull,
     ];
     /// Of the plan.
     PlanProblems = [
-        MalformedJson, MalformedBody, BodyTooLarge, UnsupportedMediaType, InvalidScene, LimitExceeded, MissingMesh,
+        MalformedJson, MalformedBody, BodyTooLarge, UnsupportedMediaType, UnsupportedEncoding, InvalidScene, LimitExceeded, MissingMesh,
         OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory, ShuttingDown,
     ];
     /// Of the render.
     RenderProblems = [
-        MalformedJson, MalformedBody, NotAcceptable, BodyTooLarge, UnsupportedMediaType, InvalidScene, LimitExceeded,
+        MalformedJson, MalformedBody, NotAcceptable, BodyTooLarge, UnsupportedMediaType, UnsupportedEncoding, InvalidScene, LimitExceeded,
         MissingMesh, OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory, ShuttingDown,
     ];
     /// Of the study of accuracy.
     AccuracyProblems = [
-        MalformedJson, MalformedBody, NotAcceptable, BodyTooLarge, UnsupportedMediaType, InvalidScene, LimitExceeded,
+        MalformedJson, MalformedBody, NotAcceptable, BodyTooLarge, UnsupportedMediaType, UnsupportedEncoding, InvalidScene, LimitExceeded,
         MissingMesh, NoTruth, OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory,
         ShuttingDown,
     ];
@@ -183,6 +183,12 @@ fn response(kinds: &[ProblemKind]) -> Response {
         let mut header = Header::new(u64::schema());
         header.description = Some("Seconds after which to try again.".to_owned());
         response = response.header("retry-after", header);
+    }
+    if kinds.contains(&ProblemKind::UnsupportedEncoding) {
+        let mut header = Header::new(String::schema());
+        header.description =
+            Some("Encodings of a body that are decoded, if its encoding is not.".to_owned());
+        response = response.header("accept-encoding", header);
     }
     response.build()
 }

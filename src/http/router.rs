@@ -3,15 +3,19 @@
 use std::any::Any;
 
 use axum::Router;
-use axum::extract::{DefaultBodyLimit, OriginalUri};
-use axum::http::Method;
-use axum::middleware::from_fn_with_state;
+use axum::extract::{DefaultBodyLimit, OriginalUri, Request};
+use axum::http::uri::PathAndQuery;
+use axum::http::{Method, Uri};
+use axum::middleware::{from_fn, from_fn_with_state, map_request};
 use axum::response::{IntoResponse, Response};
+use tower::util::option_layer;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::request_id::{MakeRequestUuid, PropagateRequestIdLayer, SetRequestIdLayer};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::cors;
+use super::decode::decode;
 use super::error::ApiError;
 use super::observe::observe;
 use super::openapi::document;
@@ -40,18 +44,48 @@ pub fn app(state: AppState) -> Router {
     layered(routes.merge(docs::swagger()), state)
 }
 
-/// Adds the layers around all routes: ids, log, metrics, deadline, body limit, and problems for paths without a route.
+/// Adds the layers around all routes: ids, other origins, log, metrics, deadline, encodings and limit of bodies, and problems for
+/// paths without a route. A slash at the end of a path finds the route without it.
 pub fn layered(routes: Router<AppState>, state: AppState) -> Router {
-    routes
+    let app = routes
+        .route_layer(from_fn(decode))
         .fallback(no_route)
         .method_not_allowed_fallback(no_method)
         // The innermost layer comes first.
         .layer(CatchPanicLayer::custom(panicked))
         .layer(DefaultBodyLimit::max(state.limits().max_body_bytes))
         .layer(from_fn_with_state(state.clone(), observe))
+        .layer(option_layer(cors::layer(state.origins())))
         .layer(PropagateRequestIdLayer::x_request_id())
         .layer(SetRequestIdLayer::x_request_id(MakeRequestUuid))
-        .with_state(state)
+        .with_state(state);
+    // Only a router around this one can change the path by which this one finds its route.
+    Router::new()
+        .fallback_service(app)
+        .layer(map_request(without_last_slash))
+}
+
+/// Removes slashes at the end of the path.
+async fn without_last_slash(mut request: Request) -> Request {
+    let uri = request.uri();
+    let path = uri.path();
+    let shorter = path.trim_end_matches('/');
+    if shorter.len() == path.len() || shorter.is_empty() || path == docs::READER {
+        return request;
+    }
+    let target = match uri.query() {
+        Some(query) => format!("{shorter}?{query}"),
+        None => shorter.to_owned(),
+    };
+    // A part of a valid path is valid, except that `//host` is not a path.
+    if let Ok(path_and_query) = PathAndQuery::try_from(target) {
+        let mut parts = uri.clone().into_parts();
+        parts.path_and_query = Some(path_and_query);
+        if let Ok(uri) = Uri::from_parts(parts) {
+            *request.uri_mut() = uri;
+        }
+    }
+    request
 }
 
 async fn no_route(OriginalUri(uri): OriginalUri) -> ApiError {

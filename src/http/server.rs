@@ -1,13 +1,15 @@
 //! The listening process, from start to graceful shutdown.
 
 use std::io;
-use std::net::SocketAddr;
 use std::time::Duration;
 
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 use tokio_util::sync::CancellationToken;
 
+use super::connections::{self, ConnectionLimits};
+use super::listen::listen;
+use super::open_files::connections_within_limit;
 use super::router::app;
 use super::state::AppState;
 use crate::config::{Limits, RenderConfig, ServeConfig};
@@ -28,7 +30,15 @@ pub enum ServeError {
     #[error("cannot listen on {address}: {source}")]
     Listen {
         /// The address.
-        address: SocketAddr,
+        address: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// The name to listen on has no address at the moment.
+    #[error("cannot listen on {name}: the name does not resolve: {source}")]
+    Resolve {
+        /// The name.
+        name: String,
         /// Why.
         source: io::Error,
     },
@@ -36,8 +46,22 @@ pub enum ServeError {
     #[error("cannot start: {0}")]
     NoDevice(String),
     /// The operating system refused a thread, a signal handler or a connection.
-    #[error(transparent)]
+    #[error("the service stopped: {0}")]
     Io(#[from] io::Error),
+}
+
+impl ServeError {
+    /// Whether the same settings will be refused again: the address belongs to another machine, or this user may not open the
+    /// port.
+    pub fn is_refusal(&self) -> bool {
+        match self {
+            Self::Listen { source, .. } => matches!(
+                source.kind(),
+                io::ErrorKind::AddrNotAvailable | io::ErrorKind::PermissionDenied
+            ),
+            Self::Resolve { .. } | Self::NoDevice(_) | Self::Io(_) => false,
+        }
+    }
 }
 
 /// Runs the service until SIGTERM or SIGINT; a second signal ends it at once.
@@ -45,19 +69,14 @@ pub enum ServeError {
 /// It listens before the device is open, so that `/healthz` and `/readyz` answer meanwhile.
 ///
 /// # Errors
-/// If the address is taken, if no device can be opened at the start, or if the system refuses a resource. A device lost
+/// If the port cannot be opened, if no device can be opened at the start, or if the system refuses a resource. A device lost
 /// later is rebuilt; the service goes on.
 pub async fn serve(
     render: RenderConfig,
     limits: Limits,
     serve: ServeConfig,
 ) -> Result<(), ServeError> {
-    let listener = TcpListener::bind(serve.listen)
-        .await
-        .map_err(|source| ServeError::Listen {
-            address: serve.listen,
-            source,
-        })?;
+    let listener = listen(&serve.listen).await?;
     let config = render.clone();
     let factory = move || {
         let renderer = Renderer::new(&config)?;
@@ -80,17 +99,27 @@ pub async fn serve_with<F>(
 where
     F: FnMut() -> Result<Box<dyn RenderBackend>, GpuError> + Send + 'static,
 {
-    tracing::info!(address = %listener.local_addr()?, "listening");
+    let limits_of_connections = ConnectionLimits {
+        most: connections_within_limit(serve.max_connections),
+        idle: Duration::from_secs(serve.idle_timeout_s),
+    };
+    tracing::info!(
+        address = %listener.local_addr()?,
+        max_connections = limits_of_connections.most,
+        "listening"
+    );
     let mut signals = Signals::new()?;
     let settings = QueueSettings {
         waiting: serve.queue,
         deadline: Duration::from_secs(serve.deadline_s),
     };
     let queue = GpuQueue::start(settings, factory)?;
-    let state = AppState::new(queue.clone(), limits, render);
+    let state =
+        AppState::new(queue.clone(), limits, render).allowing_origins(serve.cors_origin.clone());
     let stop = CancellationToken::new();
     let drain = Duration::from_secs(serve.drain_s);
-    let served = serve_on(listener, state, drain, stop.clone().cancelled_owned());
+    let stopped = stop.clone().cancelled_owned();
+    let served = serve_on(listener, state, limits_of_connections, drain, stopped);
     let signalled = async {
         signals.next().await;
         stop.cancel();
@@ -107,30 +136,27 @@ where
     result
 }
 
-/// Serves on a bound socket until `stop` resolves. Then `/readyz` answers 503, `drain` passes, new connections are refused, and
-/// running requests are finished.
+/// Serves on a bound socket until `stop` resolves. Then `/readyz` answers 503, `drain` passes, new connections are refused, idle ones
+/// are closed, and running requests are finished.
 ///
 /// # Errors
-/// If the socket fails.
+/// None at present: a socket that fails for a time is tried again.
 pub async fn serve_on(
     listener: TcpListener,
     state: AppState,
+    connections: ConnectionLimits,
     drain: Duration,
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> Result<(), ServeError> {
     let closing = CancellationToken::new();
-    let (closed, draining) = (closing.clone(), state.clone());
-    let stopped = async move {
+    let patience = state.queue().settings().deadline + CLOSING_MARGIN;
+    let shutdown = async {
         stop.await;
-        draining.start_draining();
+        state.start_draining();
         tracing::info!(drain_s = drain.as_secs_f64(), "draining");
         tokio::time::sleep(drain).await;
         tracing::info!("refusing connections, finishing running requests");
-        closed.cancel();
-    };
-    let patience = state.queue().settings().deadline + CLOSING_MARGIN;
-    let too_long = async {
-        closing.cancelled().await;
+        closing.cancel();
         tokio::time::sleep(patience).await;
     };
     let metrics = state.metrics();
@@ -141,15 +167,13 @@ pub async fn serve_on(
             metrics.upkeep();
         }
     };
-    let serving = axum::serve(listener, app(state)).with_graceful_shutdown(stopped);
+    let app = app(state.clone());
     tokio::select! {
-        result = async { serving.await } => Ok(result?),
-        () = too_long => {
-            tracing::warn!("connections are still open; leaving them");
-            Ok(())
-        }
-        () = upkeep => Ok(()),
+        () = connections::serve(listener, app, connections, metrics, closing.clone()) => {}
+        () = shutdown => tracing::warn!("connections are still open; closing them"),
+        () = upkeep => {}
     }
+    Ok(())
 }
 
 /// Resolves with the reason if the first attempt to open a device fails; otherwise never.

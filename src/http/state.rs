@@ -9,13 +9,14 @@ use tokio::sync::Semaphore;
 use super::error::ApiError;
 use super::metrics::Metrics;
 use crate::assets::MeshStore;
-use crate::config::{Limits, RenderConfig};
+use crate::config::{CorsOrigin, Limits, RenderConfig};
 use crate::gpu_queue::GpuQueue;
 
 /// What the routes share; clones refer to the same state.
 #[derive(Clone, Debug)]
 pub struct AppState {
     inner: Arc<Inner>,
+    origins: Arc<[CorsOrigin]>,
 }
 
 #[derive(Debug)]
@@ -42,7 +43,22 @@ impl AppState {
                 studies: Arc::new(Semaphore::new(1)),
                 draining: AtomicBool::new(false),
             }),
+            origins: Arc::default(),
         }
+    }
+
+    /// The same service, also for web pages of these origins.
+    #[must_use]
+    pub fn allowing_origins(self, origins: Vec<CorsOrigin>) -> Self {
+        Self {
+            origins: origins.into(),
+            ..self
+        }
+    }
+
+    /// Origins whose web pages may use the service.
+    pub fn origins(&self) -> &[CorsOrigin] {
+        &self.origins
     }
 
     /// The queue in front of the GPU.

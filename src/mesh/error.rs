@@ -98,7 +98,7 @@ pub enum MeshError {
     /// The store is full.
     #[error(
         "the mesh takes {needed_bytes} bytes, but the mesh store holds {used_bytes} of at most {budget_bytes} bytes; \
-         delete meshes or raise the limit"
+         delete meshes that are not needed; a larger store is a setting of the program (CAUSTICA_MESH_STORE_BYTES)"
     )]
     StoreFull {
         /// Bytes the mesh needs.

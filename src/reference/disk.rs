@@ -4,14 +4,13 @@
 //! bytes, all little-endian, and a blake3 hash of what comes before. Its name is a hash of what the truth depends on. A file
 //! that is damaged, truncated or of another program version is ignored.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
 use super::{Truth, TruthKind, TruthSettings};
+use crate::output_files;
 use crate::scene::{ImageFormat, Output, Quality, Receiver, ResolvedScene, ToneCurve, ViewOutput};
 
 /// First bytes of a file; the digit is the format's number.
@@ -74,23 +73,12 @@ impl Shelf {
         (reached || head.limit_rays >= settings.max_rays).then_some(truth)
     }
 
-    /// Writes the file atomically.
+    /// Writes the file; nobody sees half of one.
     pub(super) fn write(&self, truth: &Truth) -> std::io::Result<()> {
-        static NUMBER: AtomicU64 = AtomicU64::new(0);
         std::fs::create_dir_all(&self.folder)?;
-        let bytes = self.encode(truth)?;
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let temporary =
-            self.folder
-                .join(format!("{}.{}.{number}.part", self.key, std::process::id()));
-        let written = std::fs::File::create(&temporary)
-            .and_then(|mut file| file.write_all(&bytes).and_then(|()| file.sync_all()))
-            .and_then(|()| std::fs::rename(&temporary, self.file()));
-        if written.is_err() {
-            // The first error is the one to report; a partial file is never read.
-            std::fs::remove_file(&temporary).ok();
-        }
-        written?;
+        let file = self.file();
+        output_files::clear_leftovers([file.as_path()]);
+        output_files::write(&file, &self.encode(truth)?)?;
         self.make_room()
     }
 
@@ -176,6 +164,7 @@ fn key(resolved: &ResolvedScene, settings: &TruthSettings) -> String {
             output.png_bits = 8;
             output.exposure_ev = 0.0;
             output.tone_curve = ToneCurve::default();
+            output.embed_scene = true;
             if matches!(output.receiver, Receiver::Object(_)) {
                 scene.quality.level_map_texels = level_map_texels;
             }

@@ -28,6 +28,8 @@ mod image_png;
 mod image_support;
 mod lamps;
 mod level_map_cache;
+mod listen;
+mod log;
 mod mesh_hierarchy;
 mod mesh_obj;
 mod mesh_shapes;

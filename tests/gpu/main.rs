@@ -45,6 +45,7 @@ mod points;
 mod properties;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
+mod serve_program;
 mod service;
 mod shadows;
 mod sine_pool;

@@ -138,6 +138,23 @@ fn every_operation_and_schema_says_what_it_is() {
     }
 }
 
+#[test]
+fn clients_are_told_of_ids_not_of_files() {
+    let contract = contract();
+    let mesh = &contract["components"]["schemas"]["Object"]["properties"]["mesh"];
+    let text = mesh["description"].as_str().unwrap();
+    assert!(text.contains("POST /v1/meshes"), "{text}");
+    assert!(!text.contains("file"), "{text}");
+    for (words, why) in [
+        ("Content-Encoding", "encodings"),
+        ("CORS", "pages of other origins"),
+        ("slash at the end", "paths"),
+    ] {
+        let text = contract["info"]["description"].as_str().unwrap();
+        assert!(text.contains(words), "{why}");
+    }
+}
+
 /// Schemas that a scene can reach.
 fn scene_schemas(contract: &Value) -> BTreeSet<String> {
     let mut reached = BTreeSet::new();

@@ -176,7 +176,7 @@ async fn a_body_above_the_limit() {
 #[tokio::test]
 async fn nothing_there() {
     let service = Service::start().await;
-    for path in ["/v2/render", "/v1", "/index.html", "/v1/render/"] {
+    for path in ["/v2/render", "/v1", "/index.html", "/v1/rendering/"] {
         let problem = service.get(path).await.problem(ProblemKind::NotFound);
         assert!(problem.detail.contains(path), "{}", problem.detail);
     }

@@ -2,8 +2,12 @@
 //!
 //! | module | question |
 //! |---|---|
+//! | `connections` | real sockets: silence, half headers, eviction, clients that do not read |
 //! | `contract` | do `openapi.yaml`, routes, schemas and examples agree? |
+//! | `cors` | what pages of other origins may do |
+//! | `encodings` | bodies with a `Content-Encoding` |
 //! | `errors` | does each bad request get its status and problem, and is the service whole afterwards? |
+//! | `log` | a log that fails or stalls costs only its lines |
 //! | `meshes` | are meshes stored, listed, found and forgotten? |
 //! | `overload` | queue full, deadline, clients that leave |
 //! | `recovery` | device loss, panics, failed self-checks, no device |
@@ -19,8 +23,12 @@
     reason = "in a test a panic is the report of a failure"
 )]
 
+mod connections;
 mod contract;
+mod cors;
+mod encodings;
 mod errors;
+mod log;
 mod meshes;
 mod overload;
 mod recovery;

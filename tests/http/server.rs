@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use caustica::config::{Limits, RenderConfig, ServeConfig};
 use caustica::gpu::GpuError;
-use caustica::http::{ServeError, serve, serve_on, serve_with};
+use caustica::http::{ConnectionLimits, ServeError, serve, serve_on, serve_with};
 use tokio::net::TcpListener;
 use tokio::task::{JoinHandle, spawn_blocking};
 use tokio_util::sync::CancellationToken;
@@ -28,6 +28,7 @@ async fn run(drain: Duration) -> Running {
     let server = tokio::spawn(serve_on(
         listener,
         service.state.clone(),
+        ConnectionLimits::default(),
         drain,
         stop.clone().cancelled_owned(),
     ));
@@ -169,10 +170,13 @@ async fn a_body_that_breaks_off_is_reported() {
 
 fn config(address: SocketAddr) -> ServeConfig {
     ServeConfig {
-        listen: address,
+        listen: address.into(),
         queue: 1,
         deadline_s: 60,
         drain_s: 0,
+        max_connections: 64,
+        idle_timeout_s: 60,
+        cors_origin: Vec::new(),
         log_json: false,
     }
 }
@@ -186,6 +190,33 @@ async fn an_address_in_use_is_an_error() {
         .unwrap_err();
     assert!(matches!(error, ServeError::Listen { .. }), "{error}");
     assert!(error.to_string().contains(&address.to_string()));
+    assert!(!error.is_refusal(), "the port may be free later");
+}
+
+#[tokio::test]
+async fn an_address_of_another_machine_is_refused() {
+    // TEST-NET-1 (RFC 5737) belongs to no machine.
+    let address = SocketAddr::from(([192, 0, 2, 1], 0));
+    let error = serve(RenderConfig::default(), Limits::default(), config(address))
+        .await
+        .unwrap_err();
+    assert!(error.to_string().contains("192.0.2.1:0"), "{error}");
+    assert!(error.is_refusal());
+}
+
+#[tokio::test]
+async fn a_name_that_does_not_resolve_may_resolve_later() {
+    let mut config = config(SocketAddr::from(([127, 0, 0, 1], 0)));
+    config.listen = "no-such-host.invalid:8080".parse().unwrap();
+    let error = serve(RenderConfig::default(), Limits::default(), config)
+        .await
+        .unwrap_err();
+    assert!(matches!(error, ServeError::Resolve { .. }), "{error}");
+    assert!(
+        error.to_string().contains("no-such-host.invalid"),
+        "{error}"
+    );
+    assert!(!error.is_refusal());
 }
 
 #[tokio::test]

@@ -94,6 +94,9 @@ async fn metrics_count_what_happened() {
         r#"caustica_http_problems_total{type="urn:caustica:problem:malformed-json"}"#,
         r#"caustica_render_seconds_bucket{le="0.1"}"#,
         r#"caustica_render_seconds_bucket{le="+Inf"}"#,
+        "caustica_connections ",
+        r#"caustica_connections_closed_total{reason="evicted"} "#,
+        "caustica_log_lines_dropped_total ",
         "caustica_queue_depth 0",
         "caustica_queue_capacity 2",
         "caustica_ready 1",
@@ -174,6 +177,45 @@ async fn the_reader_of_the_contract_works_offline() {
     for file in ["swagger-ui-bundle.js", "swagger-ui.css"] {
         assert_eq!(service.get(&format!("/docs/{file}")).await.status, 200);
     }
+}
+
+#[tokio::test]
+async fn a_slash_at_the_end_finds_the_route() {
+    let service = Service::start().await;
+    for (with, without) in [
+        ("/healthz/", "/healthz"),
+        ("/readyz///", "/readyz"),
+        ("/v1/info/?x=1", "/v1/info"),
+        ("/v1/meshes/", "/v1/meshes"),
+        ("/openapi.yaml/", "/openapi.yaml"),
+    ] {
+        let reply = service.get(with).await;
+        assert_eq!(reply.status, 200, "{with}");
+        assert_eq!(reply.text(), service.get(without).await.text(), "{with}");
+    }
+    let plan = service
+        .post_json("/v1/plan/", super::support::scenes::small())
+        .await;
+    assert_eq!(plan.status, 200, "{}", plan.text());
+    let bad = service
+        .post("/v1/meshes/?warm=x", "model/obj", "v 0 0 0")
+        .await;
+    assert_eq!(bad.status, 400, "the query is kept: {}", bad.text());
+    let wrong = service.get("/v1/render/").await;
+    wrong.problem(ProblemKind::MethodNotAllowed);
+    let nowhere = service
+        .get("/nowhere/")
+        .await
+        .problem(ProblemKind::NotFound);
+    assert!(nowhere.detail.contains("/nowhere/"), "{}", nowhere.detail);
+    for path in ["/", "//", "//example.org/", "/%2F/"] {
+        let status = service.get(path).await.status;
+        assert!(status == 200 || status == 404, "{path}: {status}");
+    }
+    let metrics = service.get("/metrics").await.text();
+    let label = r#"caustica_http_requests_total{method="POST",route="/v1/plan",status="200"}"#;
+    assert!(metrics.contains(label), "{metrics}");
+    assert!(!metrics.contains(r#"route="/v1/plan/""#), "{metrics}");
 }
 
 /// A service with one more route, inside the same layers.

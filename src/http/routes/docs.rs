@@ -12,6 +12,9 @@ use super::super::state::AppState;
 /// The page, with the contract's example scene.
 const PAGE: &str = include_str!("try_it.html");
 
+/// Where the reader of the contract starts. Its page has links relative to this path, so the slash stays.
+pub(in super::super) const READER: &str = "/docs/";
+
 /// The placeholder of the example scene in [`PAGE`].
 const EXAMPLE_MARK: &str = "{{example_scene}}";
 

@@ -28,7 +28,8 @@ use crate::tuning::chooses_dials;
 /// Header with the hash of the canonical scene.
 pub const SCENE_HASH: HeaderName = HeaderName::from_static("x-caustica-scene-hash");
 
-const SERVER_TIMING: HeaderName = HeaderName::from_static("server-timing");
+/// Header with the time of each stage and pass.
+pub const SERVER_TIMING: HeaderName = HeaderName::from_static("server-timing");
 
 /// The bytes of an image file.
 #[derive(Clone, Debug, ToSchema)]
