@@ -6,7 +6,6 @@ struct Light {
     window_min: vec2f,         // lower corner of the grid, in units of grid_place()
     cell: vec2f,               // size of a grid cell, in the same units
     cells: u32,                // cells along each side of the window
-    wave_count: u32,
     object_count: u32,
     has_floor: u32,
     ior: f32,

@@ -18,7 +18,6 @@ struct View {
     first_row: u32,       // of this band
     row_count: u32,
     orthographic: u32,
-    wave_count: u32,
     instance_count: u32,
     light_count: u32,     // lights with maps
     air_light_count: u32, // suns above the horizon and point lights above the water

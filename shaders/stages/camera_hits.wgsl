@@ -44,7 +44,7 @@ fn pixel_ray(x: u32, y: u32) -> Ray {
 
 // Signed height over the water: > 0 above it.
 fn over_water(p: vec3f) -> f32 {
-    return p.y - water_surface_at(p.xz, view.wave_count).x;
+    return p.y - water_surface_at(p.xz).x;
 }
 
 // Distance at which a ray that starts on `side` (1 above, −1 below) of the surface crosses it; < 0: not before t_max. Steps are bounded by
@@ -63,7 +63,7 @@ fn meet_water(ray: Ray, side: f32, t_max: f32) -> f32 {
     // A ray that starts at a wave and leaves it has not hit the water yet.
     var leaves = false;
     if t == 0.0 {
-        let slope = water_surface_at(ray.origin.xz, view.wave_count).yz;
+        let slope = water_surface_at(ray.origin.xz).yz;
         leaves = side * (d.y - dot(slope, d.xz)) > 0.0;
     }
     var t_before = t;
@@ -137,7 +137,7 @@ fn trace_from_air(ray: Ray) -> Pixel {
     let nothing = Seen(0.0, -1, vec3f(0.0), vec3f(0.0));
     if t_water < 0.0 { return Pixel(nothing, vec3f(0.0), VERY_FAR_M, 0.0, 0.0, 0.0, 1.0, 0.0); }
     let p = ray.origin + ray.direction * t_water;
-    let slope = water_surface_at(p.xz, view.wave_count).yz;
+    let slope = water_surface_at(p.xz).yz;
     let normal = normal_from_slope(slope.x, slope.y);
     let cos_i = clamp(-dot(ray.direction, normal), 0.0, 1.0);
     let reflectance = fresnel_reflectance(cos_i, view.ior);
@@ -160,7 +160,7 @@ fn trace_from_water(ray: Ray) -> Pixel {
     let nothing = Seen(0.0, -1, vec3f(0.0), vec3f(0.0));
     if t_water < 0.0 { return Pixel(nothing, vec3f(0.0), VERY_FAR_M, 0.0, 0.0, 0.0, 0.0, 0.0); }
     let p = ray.origin + ray.direction * t_water;
-    let slope = water_surface_at(p.xz, view.wave_count).yz;
+    let slope = water_surface_at(p.xz).yz;
     let normal = -normal_from_slope(slope.x, slope.y);
     let cos_i = clamp(-dot(ray.direction, normal), 0.0, 1.0);
     let reflectance = fresnel_reflectance(cos_i, 1.0 / view.ior);

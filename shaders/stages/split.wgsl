@@ -59,7 +59,7 @@ struct Corner {
 fn corner_at(cells: vec2f) -> Corner {
     var c: Corner;
     var water = vec3f(0.0);
-    if light.kind != SUBMERGED { water = water_surface_at(vertex_m(cells), light.wave_count); }
+    if light.kind != SUBMERGED { water = water_surface_at(vertex_m(cells)); }
     let entry = entry_at(cells, water);
     c.origin = entry.origin;
     c.direction = entry.direction;

@@ -13,5 +13,5 @@ fn surface_main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
     let side = light.cells + 1u;
     let id = vertex_of(group, groups, invocation, side);
     if id.y >= side { return; }
-    surface[id.y * side + id.x] = vec4f(water_surface_at(vertex_m(vec2f(id)), light.wave_count), 0.0);
+    surface[id.y * side + id.x] = vec4f(water_surface_at(vertex_m(vec2f(id))), 0.0);
 }

@@ -37,7 +37,7 @@ fn meets_water_again(origin: vec3f, direction: vec3f, t_end: f32) -> bool {
     for (var i = 0u; i < MOST_STEPS; i++) {
         let p = origin + direction * t;
         if t >= t_end || p.y <= -unfollowed.max_height_m { return false; }
-        let gap = water_surface_at(p.xz, light.wave_count).x - p.y;
+        let gap = water_surface_at(p.xz).x - p.y;
         if gap < 0.0 { return true; }
         t += max(gap / rate, unfollowed.least_step_m);
     }
@@ -63,7 +63,7 @@ fn unfollowed_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocatio
     if transmitted == 0.0 || unfollowed.least_step_m == 0.0 { return; }
     // The cell's centre represents the whole cell.
     let place = vec2f(cell) + 0.5;
-    let entry = entry_at(place, water_surface_at(vertex_m(place), light.wave_count));
+    let entry = entry_at(place, water_surface_at(vertex_m(place)));
     if entry.transmittance == 0.0 { return; }
     if entry.origin.y < unfollowed.floor_y_m {
         note_unfollowed(TERM_BARED_FLOOR, transmitted);

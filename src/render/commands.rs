@@ -157,6 +157,8 @@ impl Renderer {
         let switch = |on: bool| f64::from(u8::from(on));
         let constants = [
             ("ATTENUATES", switch(facts.attenuates())),
+            ("TROCHOIDS", switch(facts.water.surface.has_trochoids())),
+            ("WAVE_GRIDS", switch(facts.water.surface.has_grids())),
             ("WIDE_SUMS", switch(wide_sums)),
             ("PLANES", switch(!facts.method.lights_meshes_by_hits)),
         ];

@@ -64,6 +64,30 @@ pub const AMPLITUDE: Range = Range::new(0.0, 100.0, "m");
 pub const WAVELENGTH: Range = Range::new(1e-3, 1e5, "m");
 /// `period_s`.
 pub const PERIOD: Range = Range::new(1e-6, 1e12, "s");
+/// `steepness` of a Gerstner wave: its curvature grows as 1/(1 − s)².
+pub const STEEPNESS: Range = Range::new(0.0, 0.95, "");
+/// `wind_speed_m_s`.
+pub const WIND_SPEED: Range = Range::new(0.0, 60.0, "m/s");
+/// `fetch_m`.
+pub const FETCH: Range = Range::new(1.0, 1e7, "m");
+/// `gamma`.
+pub const GAMMA: Range = Range::new(1.0, 10.0, "");
+/// `swell`.
+pub const SWELL: Range = Range::new(0.0, 1.0, "");
+/// `significant_height_m`.
+pub const SIGNIFICANT_HEIGHT: Range = Range::new(0.0, 100.0, "m");
+/// `tile_m`, and the sides of a basin.
+pub const TILE: Range = Range::new(0.01, 1e4, "m");
+/// `loop_s`.
+pub const LOOP: Range = Range::new(1e-3, 1e6, "s");
+/// `radius_m` of a drop.
+pub const DROP_RADIUS: Range = Range::new(1e-4, 1e4, "m");
+/// `height_m` of a drop.
+pub const DROP_HEIGHT: Range = Range::new(-100.0, 100.0, "m");
+/// `damping_per_s`.
+pub const DAMPING: Range = Range::new(0.0, 1e3, "1/s");
+/// Most drops of one basin.
+pub const MAX_DROPS: usize = 256;
 /// `floor.depth_m`.
 pub const DEPTH: Range = Range::new(0.0, 11_000.0, "m");
 /// Diffuse reflectances.
@@ -146,6 +170,10 @@ integers! {
     SplitLevels = 0..=8;
     /// `quality.pixel_samples`.
     PixelSamples = 1..=8;
+    /// `samples` of ripples.
+    BasinSamples = 16..=1024;
+    /// `seed`.
+    Seed = 0..=u32::MAX;
     /// `width` and `height` of a view.
     ViewSide = 1..=16_384;
     /// `width` and `height` of a map.
@@ -162,6 +190,23 @@ impl Integer for LevelMapTexels {
 
     fn accepted() -> String {
         "a power of two, 16 … 2048".to_owned()
+    }
+
+    fn accepts(value: u32) -> bool {
+        (Self::MIN..=Self::MAX).contains(&value) && value.is_power_of_two()
+    }
+}
+
+/// `samples` of a spectrum.
+#[derive(Clone, Copy, Debug)]
+pub struct SpectrumSamples;
+
+impl Integer for SpectrumSamples {
+    const MIN: u32 = 64;
+    const MAX: u32 = 2048;
+
+    fn accepted() -> String {
+        "a power of two, 64 … 2048".to_owned()
     }
 
     fn accepts(value: u32) -> bool {

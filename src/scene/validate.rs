@@ -7,7 +7,10 @@ use super::findings::Findings;
 use super::parse::ROTATION_LENGTH_TOLERANCE;
 use super::quality::Quality;
 use super::ranges::{self, number};
-use super::types::{Camera, Floor, Intrinsics, Light, Object, Output, Scale, Scene, Water, Wave};
+use super::types::{
+    Camera, Floor, GerstnerWave, Intrinsics, Light, Object, Output, Ripples, Scale, Scene,
+    SpectrumWaves, Water, Wave,
+};
 use super::validate_output;
 use crate::config::Limits;
 
@@ -71,14 +74,154 @@ fn water(findings: &mut Findings, water: &Water, limits: &Limits) {
     }
     for (index, wave) in waves.iter().enumerate() {
         let at = |field: &str| format!("/water/waves/{index}/{field}");
-        let Wave::Sine(sine) = wave;
-        findings.number(at("amplitude_m"), sine.amplitude_m, &ranges::AMPLITUDE);
-        findings.number(at("wavelength_m"), sine.wavelength_m, &ranges::WAVELENGTH);
         let angle = &ranges::TURNING_ANGLE;
-        findings.number(at("direction_deg"), sine.direction_deg, angle);
-        findings.number(at("phase_deg"), sine.phase_deg, angle);
-        if let Some(period_s) = sine.period_s {
-            findings.number(at("period_s"), period_s, &ranges::PERIOD);
+        match wave {
+            Wave::Sine(sine) => {
+                findings.number(at("amplitude_m"), sine.amplitude_m, &ranges::AMPLITUDE);
+                findings.number(at("wavelength_m"), sine.wavelength_m, &ranges::WAVELENGTH);
+                findings.number(at("direction_deg"), sine.direction_deg, angle);
+                findings.number(at("phase_deg"), sine.phase_deg, angle);
+                if let Some(period_s) = sine.period_s {
+                    findings.number(at("period_s"), period_s, &ranges::PERIOD);
+                }
+            }
+            Wave::Gerstner(wave) => gerstner(findings, wave, &at),
+            Wave::Spectrum(waves) => spectrum(findings, waves, &at),
+            Wave::Ripples(waves) => ripples(findings, waves, &at),
+        }
+    }
+}
+
+fn gerstner(findings: &mut Findings, wave: &GerstnerWave, at: &dyn Fn(&str) -> String) {
+    let angle = &ranges::TURNING_ANGLE;
+    let mut is_sound = findings.number(at("amplitude_m"), wave.amplitude_m, &ranges::AMPLITUDE);
+    is_sound &= findings.number(at("wavelength_m"), wave.wavelength_m, &ranges::WAVELENGTH);
+    findings.number(at("direction_deg"), wave.direction_deg, angle);
+    findings.number(at("phase_deg"), wave.phase_deg, angle);
+    if let Some(period_s) = wave.period_s {
+        findings.number(at("period_s"), period_s, &ranges::PERIOD);
+    }
+    match wave.steepness {
+        Some(steepness) => {
+            findings.number(at("steepness"), steepness, &ranges::STEEPNESS);
+        }
+        None if is_sound && !ranges::STEEPNESS.contains(wave.steepness_used()) => {
+            let limit_m = ranges::STEEPNESS.max * wave.wavelength_m / std::f64::consts::TAU;
+            findings.invalid(
+                at("amplitude_m"),
+                format!(
+                    "the steepness 2π · amplitude / wavelength is {}, at which crests fold over themselves or nearly do",
+                    number(wave.steepness_used())
+                ),
+                format!("at most {} m for this wavelength, or a `steepness` of 0 … {}", number(limit_m), ranges::STEEPNESS.max),
+            );
+        }
+        None => {}
+    }
+}
+
+fn spectrum(findings: &mut Findings, waves: &SpectrumWaves, at: &dyn Fn(&str) -> String) {
+    findings.number(
+        at("wind_speed_m_s"),
+        waves.wind_speed_m_s,
+        &ranges::WIND_SPEED,
+    );
+    let angle = &ranges::TURNING_ANGLE;
+    findings.number(at("wind_direction_deg"), waves.wind_direction_deg, angle);
+    findings.number(at("fetch_m"), waves.fetch_m, &ranges::FETCH);
+    findings.number(at("gamma"), waves.gamma, &ranges::GAMMA);
+    findings.number(at("swell"), waves.swell, &ranges::SWELL);
+    let is_sound = findings.number(at("tile_m"), waves.tile_m, &ranges::TILE);
+    findings.integer::<ranges::SpectrumSamples>(&at("samples"), waves.samples);
+    let wavelength = &ranges::WAVELENGTH;
+    for (field, value, range) in [
+        ("min_wavelength_m", waves.min_wavelength_m, wavelength),
+        ("max_wavelength_m", waves.max_wavelength_m, wavelength),
+        (
+            "significant_height_m",
+            waves.significant_height_m,
+            &ranges::SIGNIFICANT_HEIGHT,
+        ),
+        ("loop_s", waves.loop_s, &ranges::LOOP),
+    ] {
+        if let Some(value) = value {
+            findings.number(at(field), value, range);
+        }
+    }
+    if is_sound && waves.samples > 0 {
+        let [shortest_m, longest_m] = waves.band_m();
+        if shortest_m > longest_m {
+            findings.invalid(
+                at("min_wavelength_m"),
+                format!("the shortest wave, {} m, is longer than the longest, {} m", number(shortest_m), number(longest_m)),
+                "`min_wavelength_m` of at most `max_wavelength_m`; a tile of `tile_m` carries no longer waves than itself".to_owned(),
+            );
+        }
+        let carried_m = waves.shortest_carried_m();
+        if waves
+            .min_wavelength_m
+            .is_some_and(|shortest_m| shortest_m < carried_m)
+        {
+            findings.invalid(
+                at("min_wavelength_m"),
+                format!(
+                    "{} samples on {} m do not carry it",
+                    waves.samples,
+                    number(waves.tile_m)
+                ),
+                format!(
+                    "at least {} m, four samples; or more `samples`, or a smaller `tile_m`",
+                    number(carried_m)
+                ),
+            );
+        }
+    }
+}
+
+fn ripples(findings: &mut Findings, waves: &Ripples, at: &dyn Fn(&str) -> String) {
+    let coordinate = &ranges::COORDINATE;
+    let mut is_sound = findings.numbers(&at("min_m"), &waves.min_m, coordinate);
+    is_sound &= findings.numbers(&at("max_m"), &waves.max_m, coordinate);
+    findings.integer::<ranges::BasinSamples>(&at("samples"), waves.samples);
+    findings.number(at("damping_per_s"), waves.damping_per_s, &ranges::DAMPING);
+    if is_sound {
+        for axis in [0, 1] {
+            let side_m = waves.max_m[axis] - waves.min_m[axis];
+            if !ranges::TILE.contains(side_m) {
+                findings.invalid(
+                    format!("{}/{axis}", at("max_m")),
+                    format!(
+                        "along {} the basin is {} m long",
+                        ["x", "z"][axis],
+                        number(side_m)
+                    ),
+                    format!(
+                        "{} … {} m beyond `min_m`",
+                        number(ranges::TILE.min),
+                        number(ranges::TILE.max)
+                    ),
+                );
+                is_sound = false;
+            }
+        }
+    }
+    if !findings.count(&at("drops"), "drops", waves.drops.len(), ranges::MAX_DROPS) {
+        return;
+    }
+    for (index, drop) in waves.drops.iter().enumerate() {
+        let at = |field: &str| at(&format!("drops/{index}/{field}"));
+        findings.number(at("radius_m"), drop.radius_m, &ranges::DROP_RADIUS);
+        findings.number(at("height_m"), drop.height_m, &ranges::DROP_HEIGHT);
+        findings.number(at("at_s"), drop.at_s, &ranges::TIME);
+        let is_placed = findings.numbers(&at("position_m"), &drop.position_m, coordinate);
+        let is_inside = (0..2)
+            .all(|axis| (waves.min_m[axis]..=waves.max_m[axis]).contains(&drop.position_m[axis]));
+        if is_sound && is_placed && !is_inside {
+            findings.invalid(
+                at("position_m"),
+                "the drop is outside of the basin",
+                format!("a position from {:?} to {:?} m", waves.min_m, waves.max_m),
+            );
         }
     }
 }

@@ -34,7 +34,6 @@ gpu_struct! {
         first_row: u32,
         row_count: u32,
         orthographic: u32,
-        wave_count: u32,
         instance_count: u32,
         light_count: u32,
         air_light_count: u32,
@@ -81,7 +80,7 @@ pub static PASS: Pass = Pass {
     views: &[],
     wanted: wanted_for_camera,
     steps: Steps::Band(|facts, band| pixel_step("camera_hits_main", facts, band)),
-    work: |facts| pixels(facts) as f64 * (1.0 + facts.water.surface.gpu_element_count() as f64),
+    work: |facts| pixels(facts) as f64 * (1.0 + facts.water.surface.gpu_work_per_point()),
 };
 
 /// Pixels of the largest band of a view; 0 without a camera.
@@ -136,7 +135,6 @@ fn view_uniform(facts: &SceneFacts, band: BandRun) -> Vec<u8> {
         first_row: band.first_row,
         row_count: band.rows,
         orthographic: u32::from(camera.orthographic),
-        wave_count: facts.water.surface.gpu_element_count() as u32,
         instance_count: facts.receivers.objects.len() as u32,
         light_count: facts.lights.lit.len() as u32,
         air_light_count: facts.lights.in_air.len() as u32,

@@ -94,7 +94,7 @@ pub static PASS: Pass = Pass {
 fn work(facts: &SceneFacts) -> f64 {
     let maps = MapLayout::with_floor(facts, estimate::coarse_floor_map(facts));
     let sums = cost_of_channels(facts);
-    let waves = facts.water.surface.gpu_element_count() as f64;
+    let waves = facts.water.surface.gpu_work_per_point();
     let wet = facts.wet_objects().count() as f64;
     f64::from(estimate::coarse_cells(facts)).powi(2) * (5.0 * sums + 2.0 + waves + wet.sqrt())
         + maps.flux_texels() as f64 * sums

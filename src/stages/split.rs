@@ -102,7 +102,7 @@ pub static PASS: Pass = Pass {
             * f64::from(1_u32 << facts.quality.split_levels)
             * edges(facts)
             * (1.0
-                + facts.water.surface.gpu_element_count() as f64
+                + facts.water.surface.gpu_work_per_point()
                 + (facts.receivers.geometry_bytes as f64 / 64.0)
                     .max(1.0)
                     .log2())

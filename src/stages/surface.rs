@@ -5,27 +5,14 @@ use super::queues::in_columns;
 use super::{Pass, Slot, Step, Steps};
 use crate::facts::SceneFacts;
 use crate::facts::source::Source;
-use crate::gpu_struct;
 use crate::graph::{BeamSetRun, Origin};
 
-gpu_struct! {
-    /// A wave component of `shaders/shared/water_surface.wgsl`; fields are documented there.
-    #[expect(missing_docs, reason = "documented in the WGSL twin")]
-    pub Wave = "Wave" {
-        amplitude_m: f32,
-        frequency_x_per_m: f32,
-        frequency_z_per_m: f32,
-        phase_turns: f32,
-    }
-}
-
-/// Wave components.
+/// The water's surface, as `shaders/shared/water_surface.wgsl` describes it.
 pub static WAVES: Slot = Slot {
     origin: Origin::Host,
-    element: Some(Wave::LAYOUT),
     ..Slot::buffer(
         "waves",
-        "amplitude m, frequency turns/m, phase turns",
+        "waves with a formula, and spline coefficients of grids m",
         |facts| 16 * facts.water.surface.gpu_element_count() as u64,
     )
 };
@@ -53,7 +40,7 @@ pub static PASS: Pass = Pass {
         }
         grid_step("surface_main", facts, set)
     }),
-    work: |facts| cells(facts) * (1.0 + facts.water.surface.gpu_element_count() as f64),
+    work: |facts| cells(facts) * (1.0 + facts.water.surface.gpu_work_per_point()),
 };
 
 /// Vertices of the water grid.

@@ -86,7 +86,7 @@ pub static PASS: Pass = Pass {
         } else {
             0.0
         };
-        let waves = facts.water.surface.gpu_element_count() as f64;
+        let waves = facts.water.surface.gpu_work_per_point();
         cells(facts) * (2.0 + steps * (1.0 + waves))
     },
 };

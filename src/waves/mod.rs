@@ -1,15 +1,21 @@
 //! The water surface at one time: height, slope and curvature at a point or along a row, and bounds of all of them.
 //!
-//! - `surface`: [`Surface`], the only interface; it hides the kinds of water;
+//! - `surface`: [`Surface`], the only interface; it adds up the kinds of water;
 //! - `row`: the points of a row, evaluated a block at a time;
-//! - `sines`: a sum of sines, the only kind so far.
+//! - `sines`, `trochoids`: waves with a formula;
+//! - `sea`, `ripples`: water that is computed on a grid (`grid`), and `spline`, the surface through the samples.
 //!
-//! To add a kind: a file of its own with the methods that [`Surface`] passes on, and a variant of the `Kind` in `surface`.
+//! To add a kind: a file of its own, and a line where `surface` collects them.
 //! Nothing outside this folder may depend on how a surface is represented; a test in `tests/cpu/rooms.rs` checks that.
 
+mod grid;
+mod ripples;
 mod row;
+mod sea;
 mod sines;
+mod spline;
 mod surface;
+mod trochoids;
 
 pub use row::{ROW_POINTS, RowPoints, Rows};
 pub use surface::{Curvature, Surface, SurfacePoint, normal};

@@ -4,6 +4,8 @@
 use glam::DVec2;
 
 use super::sines::SineRows;
+use super::spline::Spline;
+use super::trochoids::Trochoids;
 
 /// Points of a block.
 pub const ROW_POINTS: usize = 128;
@@ -34,21 +36,28 @@ impl RowPoints {
 /// A surface along rows with a fixed step; made by [`super::Surface::rows`].
 #[derive(Clone, Debug)]
 pub struct Rows {
-    pub(super) kind: RowKind,
-}
-
-/// The kind of surface.
-#[derive(Clone, Debug)]
-pub(super) enum RowKind {
-    /// A sum of sines.
-    Sines(SineRows),
+    pub(super) step_m: DVec2,
+    pub(super) sines: SineRows,
+    pub(super) trochoids: Trochoids,
+    pub(super) splines: Vec<Spline>,
 }
 
 impl Rows {
     /// Height and slope at [`ROW_POINTS`] points from `start_m`, (x, z), on.
     pub fn evaluate(&self, start_m: DVec2, points: &mut RowPoints) {
-        match &self.kind {
-            RowKind::Sines(rows) => rows.evaluate(start_m, points),
+        points.clone_from(&RowPoints::FLAT);
+        self.sines.evaluate(start_m, points);
+        if self.trochoids.count() == 0 && self.splines.is_empty() {
+            return;
+        }
+        for i in 0..ROW_POINTS {
+            let at = start_m + self.step_m * i as f64;
+            let others = self.splines.iter().map(|spline| spline.at(at.x, at.y));
+            for point in others.chain([self.trochoids.at(at.x, at.y)]) {
+                points.height_m[i] += point.height_m;
+                points.slope_x[i] += point.slope.x;
+                points.slope_z[i] += point.slope.y;
+            }
         }
     }
 }

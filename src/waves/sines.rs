@@ -23,6 +23,34 @@ struct Sine {
     phase_turns: f64,
 }
 
+/// A wave that runs without changing its shape.
+pub(super) struct Running {
+    pub(super) wavelength_m: f64,
+    pub(super) direction_deg: f64,
+    pub(super) phase_deg: f64,
+    pub(super) period_s: Option<f64>,
+}
+
+impl Running {
+    /// Spatial frequency, turns per metre, and phase at the origin, turns, at `scene.time_s`.
+    pub(super) fn at_time_of(&self, scene: &Scene) -> (DVec2, f64) {
+        let depth_m = match (scene.water.dispersion, &scene.floor) {
+            (Dispersion::FiniteDepth, Some(floor)) => floor.depth_m,
+            _ => f64::INFINITY,
+        };
+        let k_per_m = TAU / self.wavelength_m;
+        let turns_per_s = match self.period_s {
+            Some(period_s) => 1.0 / period_s,
+            None => dispersion::angular_frequency(k_per_m, depth_m) / TAU,
+        };
+        let (sin_d, cos_d) = sin_cos_turns(self.direction_deg / 360.0);
+        let phase_turns = reduce_turns(
+            reduce_turns(self.phase_deg / 360.0) - reduce_turns(turns_per_s * scene.time_s),
+        );
+        (DVec2::new(cos_d, sin_d) / self.wavelength_m, phase_turns)
+    }
+}
+
 /// A sum of sines.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sines {
@@ -32,28 +60,23 @@ pub(super) struct Sines {
 impl Sines {
     /// The waves of `scene` at `scene.time_s`.
     pub(super) fn of(scene: &Scene) -> Self {
-        let depth_m = match (scene.water.dispersion, &scene.floor) {
-            (Dispersion::FiniteDepth, Some(floor)) => floor.depth_m,
-            _ => f64::INFINITY,
-        };
-        let components = scene
-            .water
-            .waves
-            .iter()
-            .map(|Wave::Sine(wave)| {
-                let k_per_m = TAU / wave.wavelength_m;
-                let turns_per_s = match wave.period_s {
-                    Some(period_s) => 1.0 / period_s,
-                    None => dispersion::angular_frequency(k_per_m, depth_m) / TAU,
+        let waves = scene.water.waves.iter().filter_map(|wave| match wave {
+            Wave::Sine(wave) => Some(wave),
+            _ => None,
+        });
+        let components = waves
+            .map(|wave| {
+                let running = Running {
+                    wavelength_m: wave.wavelength_m,
+                    direction_deg: wave.direction_deg,
+                    phase_deg: wave.phase_deg,
+                    period_s: wave.period_s,
                 };
-                let (sin_d, cos_d) = sin_cos_turns(wave.direction_deg / 360.0);
+                let (frequency_per_m, phase_turns) = running.at_time_of(scene);
                 Sine {
                     amplitude_m: wave.amplitude_m,
-                    frequency_per_m: DVec2::new(cos_d, sin_d) / wave.wavelength_m,
-                    phase_turns: reduce_turns(
-                        reduce_turns(wave.phase_deg / 360.0)
-                            - reduce_turns(turns_per_s * scene.time_s),
-                    ),
+                    frequency_per_m,
+                    phase_turns,
                 }
             })
             .collect();
@@ -172,29 +195,21 @@ impl Sines {
         }
     }
 
-    /// See [`super::Surface::description`].
-    pub(super) fn description(&self) -> String {
-        format!("water with {} wave components", self.components.len())
-    }
-
-    /// See [`super::Surface::gpu_element_count`].
-    pub(super) fn gpu_element_count(&self) -> usize {
+    /// Number of sines.
+    pub(super) fn count(&self) -> usize {
         self.components.len()
     }
 
-    /// See [`super::Surface::gpu_elements`].
-    pub(super) fn gpu_elements(&self) -> Vec<[f32; 4]> {
-        self.components
-            .iter()
-            .map(|c| {
-                [
-                    c.amplitude_m as f32,
-                    c.frequency_per_m.x as f32,
-                    c.frequency_per_m.y as f32,
-                    c.phase_turns as f32,
-                ]
-            })
-            .collect()
+    /// Amplitude m, frequency turns/m, phase turns of each.
+    pub(super) fn gpu_elements(&self) -> impl Iterator<Item = [f32; 4]> {
+        self.components.iter().map(|c| {
+            [
+                c.amplitude_m as f32,
+                c.frequency_per_m.x as f32,
+                c.frequency_per_m.y as f32,
+                c.phase_turns as f32,
+            ]
+        })
     }
 }
 
@@ -231,12 +246,9 @@ pub(super) struct SineRows {
 }
 
 impl SineRows {
-    /// Computes sin(α + iδ) from the sine and cosine of α, which are exact in every block, and those of iδ, which are in the
+    /// Adds to `points`. Computes sin(α + iδ) from the sine and cosine of α, which are exact in every block, and those of iδ, which are in the
     /// table.
     pub(super) fn evaluate(&self, start_m: DVec2, points: &mut RowPoints) {
-        points.height_m.fill(0.0);
-        points.slope_x.fill(0.0);
-        points.slope_z.fill(0.0);
         for table in &self.tables {
             let Sine {
                 amplitude_m,
@@ -257,6 +269,6 @@ impl SineRows {
     }
 }
 
-fn reduce_turns(turns: f64) -> f64 {
+pub(super) fn reduce_turns(turns: f64) -> f64 {
     turns - turns.round()
 }

@@ -4,10 +4,14 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::row::{RowKind, Rows};
+use super::grid::Heights;
+use super::row::Rows;
 use super::sines::Sines;
+use super::spline::Spline;
+use super::trochoids::Trochoids;
+use super::{ripples, sea};
 use crate::physics::refraction;
-use crate::scene::Scene;
+use crate::scene::{Scene, Wave};
 
 /// Height and slope of the water at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +20,14 @@ pub struct SurfacePoint {
     pub height_m: f64,
     /// (∂h/∂x, ∂h/∂z).
     pub slope: DVec2,
+}
+
+impl SurfacePoint {
+    /// Water at rest.
+    pub(super) const FLAT: Self = Self {
+        height_m: 0.0,
+        slope: DVec2::ZERO,
+    };
 }
 
 /// Second derivatives of the height at a point.
@@ -30,6 +42,13 @@ pub struct Curvature {
 }
 
 impl Curvature {
+    /// Water at rest.
+    pub(super) const FLAT: Self = Self {
+        xx_per_m: 0.0,
+        xz_per_m: 0.0,
+        zz_per_m: 0.0,
+    };
+
     /// Largest magnitude of the second derivative along any horizontal direction, 1/m: the larger eigenvalue of the symmetric
     /// matrix, by magnitude.
     pub fn largest_per_m(&self) -> f64 {
@@ -48,96 +67,143 @@ impl Curvature {
 /// copy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    kind: Kind,
+    sines: Sines,
+    trochoids: Trochoids,
+    grids: Vec<Grid>,
 }
 
-/// The kind of water.
+/// Water that is computed on a grid.
 #[derive(Clone, Debug, PartialEq)]
-enum Kind {
-    /// A sum of sines; flat water has none.
-    Sines(Sines),
+struct Grid {
+    spline: Spline,
+    shortest_wave_m: f64,
+    description: String,
+}
+
+impl Grid {
+    fn of(heights: Heights) -> Self {
+        Self {
+            shortest_wave_m: heights.shortest_wave_m,
+            description: heights.description.clone(),
+            spline: heights.spline(),
+        }
+    }
 }
 
 impl Surface {
     /// The surface of `scene` at `scene.time_s`; the origin is that of the scene.
     pub fn of(scene: &Scene) -> Self {
+        Self::refined(scene, 1)
+    }
+
+    /// The same with `refinement` times as many samples along the sides of grids, so that their splines miss less of what they stand for;
+    /// for references.
+    pub fn refined(scene: &Scene, refinement: u32) -> Self {
+        let grids = scene.water.waves.iter().filter_map(|wave| match wave {
+            Wave::Sine(_) | Wave::Gerstner(_) => None,
+            Wave::Spectrum(waves) => Some(sea::heights(waves, scene, refinement)),
+            Wave::Ripples(waves) => Some(ripples::heights(waves, scene, refinement)),
+        });
         Self {
-            kind: Kind::Sines(Sines::of(scene)),
+            sines: Sines::of(scene),
+            trochoids: Trochoids::of(scene),
+            grids: grids.map(Grid::of).collect(),
         }
     }
 
     /// The same surface with (x, z) = (0, 0) moved to `origin_m`.
     pub fn recentred(&self, origin_m: DVec2) -> Self {
-        let kind = match &self.kind {
-            Kind::Sines(sines) => Kind::Sines(sines.recentred(origin_m)),
+        let recentred = |grid: &Grid| Grid {
+            spline: grid.spline.recentred(origin_m),
+            ..grid.clone()
         };
-        Self { kind }
+        Self {
+            sines: self.sines.recentred(origin_m),
+            trochoids: self.trochoids.recentred(origin_m),
+            grids: self.grids.iter().map(recentred).collect(),
+        }
+    }
+
+    fn splines(&self) -> impl Iterator<Item = &Spline> {
+        self.grids.iter().map(|grid| &grid.spline)
     }
 
     /// Height and slope at (x, z), m.
     pub fn at(&self, x_m: f64, z_m: f64) -> SurfacePoint {
-        match &self.kind {
-            Kind::Sines(sines) => sines.at(x_m, z_m),
+        let mut point = self.sines.at(x_m, z_m);
+        let others = self.splines().map(|spline| spline.at(x_m, z_m));
+        for other in others.chain([self.trochoids.at(x_m, z_m)]) {
+            point.height_m += other.height_m;
+            point.slope += other.slope;
         }
+        point
     }
 
     /// Height, slope and curvature at (x, z), m. Height and slope equal those of [`Self::at`] except for rounding.
     pub fn curved_at(&self, x_m: f64, z_m: f64) -> (SurfacePoint, Curvature) {
-        match &self.kind {
-            Kind::Sines(sines) => sines.curved_at(x_m, z_m),
+        let (mut point, mut curvature) = self.sines.curved_at(x_m, z_m);
+        let others = self.splines().map(|spline| spline.curved_at(x_m, z_m));
+        for (other, curved) in others.chain([self.trochoids.curved_at(x_m, z_m)]) {
+            point.height_m += other.height_m;
+            point.slope += other.slope;
+            curvature.xx_per_m += curved.xx_per_m;
+            curvature.xz_per_m += curved.xz_per_m;
+            curvature.zz_per_m += curved.zz_per_m;
         }
+        (point, curvature)
     }
 
     /// Height and slope along rows of points that are `step_m`, (x, z), apart. Much faster than [`Self::at`] for many points, and
     /// equal except for rounding.
     pub fn rows(&self, step_m: DVec2) -> Rows {
-        let kind = match &self.kind {
-            Kind::Sines(sines) => RowKind::Sines(sines.rows(step_m)),
-        };
-        Rows { kind }
+        Rows {
+            step_m,
+            sines: self.sines.rows(step_m),
+            trochoids: self.trochoids.clone(),
+            splines: self.splines().cloned().collect(),
+        }
     }
 
     /// Whether the following bounds and the shortest wave depend on time. If not, they are equal to the bit at all times.
     pub fn bounds_change_with_time(&self) -> bool {
-        match &self.kind {
-            // Only phases change with time, not amplitudes and wavelengths.
-            Kind::Sines(_) => false,
-        }
+        // Of waves with a formula only phases change with time, not amplitudes and wavelengths.
+        !self.grids.is_empty()
     }
 
     /// Upper bound of |height|, m.
     pub fn max_height_m(&self) -> f64 {
-        match &self.kind {
-            Kind::Sines(sines) => sines.max_height_m(),
-        }
+        let of_grids: f64 = self.splines().map(Spline::max_height_m).sum();
+        self.sines.max_height_m() + self.trochoids.max_height_m() + of_grids
     }
 
     /// Upper bound of the slope along the horizontal unit vector `u`.
     pub fn max_slope_along(&self, u: DVec2) -> f64 {
-        match &self.kind {
-            Kind::Sines(sines) => sines.max_slope_along(u),
-        }
+        let of_grids: f64 = self.splines().map(|spline| spline.max_slope_along(u)).sum();
+        self.sines.max_slope_along(u) + self.trochoids.max_slope_along(u) + of_grids
     }
 
     /// Upper bound of the slope in any direction; 0 for flat water only.
     pub fn max_slope(&self) -> f64 {
-        match &self.kind {
-            Kind::Sines(sines) => sines.max_slope(),
-        }
+        let of_grids: f64 = self.splines().map(Spline::max_slope).sum();
+        self.sines.max_slope() + self.trochoids.max_slope() + of_grids
     }
 
     /// Upper bound of the magnitude of the second derivative along any direction, 1/m.
     pub fn max_second_derivative_per_m(&self) -> f64 {
-        match &self.kind {
-            Kind::Sines(sines) => sines.max_derivative(2),
-        }
+        let of_grids: f64 = self
+            .splines()
+            .map(Spline::max_second_derivative_per_m)
+            .sum();
+        self.sines.max_derivative(2) + self.trochoids.max_second_derivative_per_m() + of_grids
     }
 
     /// Upper bound of the magnitude of the third derivative along any direction, 1/m².
     pub fn max_third_derivative_per_m2(&self) -> f64 {
-        match &self.kind {
-            Kind::Sines(sines) => sines.max_derivative(3),
-        }
+        let of_grids: f64 = self
+            .splines()
+            .map(Spline::max_third_derivative_per_m2)
+            .sum();
+        self.sines.max_derivative(3) + self.trochoids.max_third_derivative_per_m2() + of_grids
     }
 
     /// The extreme slopes: for each of `directions` evenly spaced directions, from x towards z, a slope that no slope of the
@@ -149,18 +215,21 @@ impl Surface {
         (0..directions)
             .map(|i| {
                 let u = DVec2::from_angle(TAU * f64::from(i) / f64::from(directions));
-                match &self.kind {
-                    Kind::Sines(sines) => sines.rim_slope(u),
-                }
+                let of_grids: DVec2 = self.splines().map(|spline| spline.rim_slope(u)).sum();
+                self.sines.rim_slope(u) + self.trochoids.rim_slope(u) + of_grids
             })
             .collect()
     }
 
     /// Length of the shortest wave, m; infinite for flat water.
     pub fn shortest_wave_m(&self) -> f64 {
-        match &self.kind {
-            Kind::Sines(sines) => sines.shortest_wave_m(),
-        }
+        let of_grids = self.grids.iter().map(|grid| grid.shortest_wave_m);
+        of_grids
+            .chain([
+                self.sines.shortest_wave_m(),
+                self.trochoids.shortest_wave_m(),
+            ])
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The kind of water in words, for sentences such as "the sun shines into …".
@@ -168,23 +237,63 @@ impl Surface {
         if self.max_slope() == 0.0 {
             return "flat water".to_owned();
         }
-        match &self.kind {
-            Kind::Sines(sines) => sines.description(),
-        }
+        let counted = |count: usize, one: &str, many: &str| match count {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            _ => Some(format!("{count} {many}")),
+        };
+        // Sines are counted as before there were other kinds.
+        let sines =
+            (self.sines.count() > 0).then(|| format!("{} wave components", self.sines.count()));
+        let trochoids = counted(self.trochoids.count(), "Gerstner wave", "Gerstner waves");
+        let grids = self.grids.iter().map(|grid| grid.description.clone());
+        let parts: Vec<String> = sines.into_iter().chain(trochoids).chain(grids).collect();
+        format!("water with {}", parts.join(", "))
     }
 
-    /// Number of [`Self::gpu_elements`]. The time to evaluate a point on the GPU grows with it.
+    /// Time to evaluate a point on the GPU, in sines.
+    pub fn gpu_work_per_point(&self) -> f64 {
+        (self.sines.count() + 6 * self.trochoids.count() + 8 * self.grids.len()) as f64
+    }
+
+    /// Whether there are Gerstner waves.
+    pub fn has_trochoids(&self) -> bool {
+        self.trochoids.count() > 0
+    }
+
+    /// Whether there is water that is computed on a grid.
+    pub fn has_grids(&self) -> bool {
+        !self.grids.is_empty()
+    }
+
+    /// Number of [`Self::gpu_elements`].
     pub fn gpu_element_count(&self) -> usize {
-        match &self.kind {
-            Kind::Sines(sines) => sines.gpu_element_count(),
-        }
+        let of_grids: usize = self
+            .splines()
+            .map(|s| 2 + s.coefficients().len().div_ceil(4))
+            .sum();
+        1 + self.sines.count() + 2 * self.trochoids.count() + of_grids
     }
 
-    /// The data from which the GPU evaluates the surface: elements of 16 bytes, laid out as the shaders' `Wave`.
+    /// The data from which the GPU evaluates the surface: elements of 16 bytes, as `shaders/shared/water_surface.wgsl` describes them.
     pub fn gpu_elements(&self) -> Vec<[f32; 4]> {
-        match &self.kind {
-            Kind::Sines(sines) => sines.gpu_elements(),
+        let counts = [self.sines.count(), self.trochoids.count(), self.grids.len()];
+        let [sines, trochoids, grids] = counts.map(|count| count as f32);
+        let mut elements = Vec::with_capacity(self.gpu_element_count());
+        elements.push([sines, trochoids, grids, 0.0]);
+        elements.extend(self.sines.gpu_elements());
+        elements.extend(self.trochoids.gpu_elements());
+        let mut first = elements.len() + 2 * self.grids.len();
+        for spline in self.splines() {
+            elements.extend(spline.gpu_header(first));
+            first += spline.coefficients().len().div_ceil(4);
         }
+        for spline in self.splines() {
+            let four = spline.coefficients().chunks(4);
+            elements
+                .extend(four.map(|c| std::array::from_fn(|i| c.get(i).map_or(0.0, |c| *c as f32))));
+        }
+        elements
     }
 }
 

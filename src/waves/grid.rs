@@ -1,0 +1,29 @@
+//! Heights on an even grid, as the kinds of water that are computed on one give them to [`super::spline`].
+
+use glam::DVec2;
+
+use super::spline::Spline;
+
+/// Heights that repeat along x and z.
+#[derive(Clone, Debug)]
+pub(super) struct Heights {
+    /// Heights, m, row by row along x.
+    pub(super) heights_m: Vec<f64>,
+    /// Numbers of samples along x and z.
+    pub(super) size: [usize; 2],
+    /// Distances of the samples along x and z, m.
+    pub(super) step_m: DVec2,
+    /// Place (x, z) of the first sample, m.
+    pub(super) corner_m: DVec2,
+    /// Length of the shortest wave, m.
+    pub(super) shortest_wave_m: f64,
+    /// What it is, for plans: "a jonswap sea", "a basin with 3 drops".
+    pub(super) description: String,
+}
+
+impl Heights {
+    /// The spline through the heights.
+    pub(super) fn spline(self) -> Spline {
+        Spline::through(self.heights_m, self.size, self.step_m, self.corner_m)
+    }
+}

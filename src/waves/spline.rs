@@ -1,0 +1,406 @@
+//! Surfaces given by samples: an interpolating cubic B-spline over an even grid.
+//!
+//! Second derivatives are continuous; the caustics of a surface made of facets would show the facets. Source: Unser, Aldroubi and
+//! Eden, "B-Spline Signal Processing: Part II", IEEE Trans. Signal Processing 41(2), 1993.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::surface::{Curvature, SurfacePoint};
+
+/// Pole of the filter that turns samples into coefficients.
+const POLE: f64 = -0.267_949_192_431_122_7;
+
+/// Steps after which the filter has forgotten a sample: |POLE|³⁰ < 10⁻¹⁷.
+const MEMORY: usize = 30;
+
+/// Directions in which slopes are bounded.
+const DIRECTIONS: usize = 32;
+
+/// Heights on an even grid that repeats along x and z, and the spline through them.
+#[derive(Clone, Debug)]
+pub(super) struct Spline {
+    /// Numbers of coefficients along x and z.
+    size: [usize; 2],
+    /// Distances of the samples along x and z, m.
+    step_m: DVec2,
+    /// Place of the first coefficient, m.
+    corner_m: DVec2,
+    /// Row by row along x.
+    coefficients: Arc<[f64]>,
+    bounds: Arc<Bounds>,
+}
+
+/// Bounds of the spline and its derivatives, true at every point.
+#[derive(Debug, PartialEq)]
+struct Bounds {
+    height_m: f64,
+    /// Largest slope along each of [`DIRECTIONS`] directions.
+    slopes: [f64; DIRECTIONS],
+    second_per_m: f64,
+    third_per_m2: f64,
+}
+
+/// A spline is its coefficients: two with the same have the same bounds.
+impl PartialEq for Spline {
+    fn eq(&self, other: &Self) -> bool {
+        self.size == other.size
+            && self.step_m == other.step_m
+            && self.corner_m == other.corner_m
+            && self.coefficients == other.coefficients
+    }
+}
+
+impl Spline {
+    /// The spline through `heights_m`. `corner_m` is the place of the first sample; rows run along x.
+    pub(super) fn through(
+        heights_m: Vec<f64>,
+        size: [usize; 2],
+        step_m: DVec2,
+        corner_m: DVec2,
+    ) -> Self {
+        let mut coefficients = heights_m;
+        filter(&mut coefficients, size);
+        Self {
+            size,
+            step_m,
+            corner_m,
+            bounds: Arc::new(Bounds::of(&coefficients, size, step_m)),
+            coefficients: coefficients.into(),
+        }
+    }
+
+    /// See [`super::Surface::recentred`].
+    pub(super) fn recentred(&self, origin_m: DVec2) -> Self {
+        // The copy nearest to the origin, so that f32 holds its place.
+        let tile_m = self.tile_m();
+        let corner_m = self.corner_m - origin_m;
+        let corner_m = corner_m - tile_m * (corner_m / tile_m).round();
+        Self {
+            corner_m,
+            ..self.clone()
+        }
+    }
+
+    /// Lengths of the sides of the grid, m.
+    pub(super) fn tile_m(&self) -> DVec2 {
+        self.step_m * DVec2::new(self.size[0] as f64, self.size[1] as f64)
+    }
+
+    /// See [`super::Surface::at`].
+    pub(super) fn at(&self, x_m: f64, z_m: f64) -> SurfacePoint {
+        let at = (DVec2::new(x_m, z_m) - self.corner_m) / self.step_m;
+        let cell = at.floor();
+        let (t, first) = (at - cell, [cell.x as i64 - 1, cell.y as i64 - 1]);
+        let (wx, dx) = (weights(t.x), slopes(t.x));
+        let (wz, dz) = (weights(t.y), slopes(t.y));
+        let mut sums = [0.0; 3];
+        self.rows_at(first, |row, values| {
+            let across = dot(values, &wx);
+            sums[0] += wz[row] * across;
+            sums[1] += wz[row] * dot(values, &dx);
+            sums[2] += dz[row] * across;
+        });
+        SurfacePoint {
+            height_m: sums[0],
+            slope: DVec2::new(sums[1], sums[2]) / self.step_m,
+        }
+    }
+
+    /// See [`super::Surface::curved_at`].
+    pub(super) fn curved_at(&self, x_m: f64, z_m: f64) -> (SurfacePoint, Curvature) {
+        let at = (DVec2::new(x_m, z_m) - self.corner_m) / self.step_m;
+        let cell = at.floor();
+        let (t, first) = (at - cell, [cell.x as i64 - 1, cell.y as i64 - 1]);
+        let (wx, dx, cx) = (weights(t.x), slopes(t.x), curvatures(t.x));
+        let (wz, dz, cz) = (weights(t.y), slopes(t.y), curvatures(t.y));
+        let mut sums = [0.0; 6];
+        self.rows_at(first, |row, values| {
+            let (value, slope, curvature) = (dot(values, &wx), dot(values, &dx), dot(values, &cx));
+            sums[0] += wz[row] * value;
+            sums[1] += wz[row] * slope;
+            sums[2] += dz[row] * value;
+            sums[3] += wz[row] * curvature;
+            sums[4] += dz[row] * slope;
+            sums[5] += cz[row] * value;
+        });
+        let step = self.step_m;
+        let point = SurfacePoint {
+            height_m: sums[0],
+            slope: DVec2::new(sums[1], sums[2]) / step,
+        };
+        let curvature = Curvature {
+            xx_per_m: sums[3] / (step.x * step.x),
+            xz_per_m: sums[4] / (step.x * step.y),
+            zz_per_m: sums[5] / (step.y * step.y),
+        };
+        (point, curvature)
+    }
+
+    /// Calls `add` with the four coefficients of each of the four rows from `first` on.
+    fn rows_at(&self, first: [i64; 2], mut add: impl FnMut(usize, &[f64; 4])) {
+        let [width, height] = self.size;
+        let columns: [usize; 4] = std::array::from_fn(|i| wrapped(first[0] + i as i64, width));
+        for row in 0..4 {
+            let start = wrapped(first[1] + row as i64, height) * width;
+            add(
+                row,
+                &columns.map(|column| self.coefficients[start + column]),
+            );
+        }
+    }
+
+    /// See [`super::Surface::max_height_m`].
+    pub(super) fn max_height_m(&self) -> f64 {
+        self.bounds.height_m
+    }
+
+    /// See [`super::Surface::max_slope_along`].
+    pub(super) fn max_slope_along(&self, u: DVec2) -> f64 {
+        self.bounds.slope_along(u).max(self.bounds.slope_along(-u))
+    }
+
+    /// See [`super::Surface::max_slope`].
+    pub(super) fn max_slope(&self) -> f64 {
+        (0..DIRECTIONS)
+            .map(|i| self.bounds.corner(i).length())
+            .fold(0.0, f64::max)
+    }
+
+    /// See [`super::Surface::max_second_derivative_per_m`].
+    pub(super) fn max_second_derivative_per_m(&self) -> f64 {
+        self.bounds.second_per_m
+    }
+
+    /// See [`super::Surface::max_third_derivative_per_m2`].
+    pub(super) fn max_third_derivative_per_m2(&self) -> f64 {
+        self.bounds.third_per_m2
+    }
+
+    /// A slope that no slope exceeds along the unit vector `u`.
+    pub(super) fn rim_slope(&self, u: DVec2) -> DVec2 {
+        self.bounds.corner(sector_of(u))
+    }
+
+    /// The grid for the GPU, whose coefficients begin at the element `first`: place of the first coefficient and reciprocal steps;
+    /// then numbers of coefficients along x and z, and `first`: whole numbers below 2²⁴.
+    pub(super) fn gpu_header(&self, first: usize) -> [[f32; 4]; 2] {
+        let [width, height] = self.size.map(|count| count as f32);
+        let (corner, inverse) = (self.corner_m.as_vec2(), self.step_m.recip().as_vec2());
+        [
+            [corner.x, corner.y, inverse.x, inverse.y],
+            [width, height, first as f32, 0.0],
+        ]
+    }
+
+    /// The coefficients, m, row by row.
+    pub(super) fn coefficients(&self) -> &[f64] {
+        &self.coefficients
+    }
+}
+
+fn wrapped(index: i64, count: usize) -> usize {
+    index.rem_euclid(count as i64) as usize
+}
+
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+}
+
+/// Weights of the four coefficients around a point at `t`, 0 … 1, between the middle two.
+fn weights(t: f64) -> [f64; 4] {
+    let s = 1.0 - t;
+    [
+        s * s * s / 6.0,
+        (4.0 - 6.0 * t * t + 3.0 * t * t * t) / 6.0,
+        (4.0 - 6.0 * s * s + 3.0 * s * s * s) / 6.0,
+        t * t * t / 6.0,
+    ]
+}
+
+/// First derivatives of the weights.
+fn slopes(t: f64) -> [f64; 4] {
+    let s = 1.0 - t;
+    [
+        -0.5 * s * s,
+        -2.0 * t + 1.5 * t * t,
+        2.0 * s - 1.5 * s * s,
+        0.5 * t * t,
+    ]
+}
+
+/// Second derivatives of the weights.
+fn curvatures(t: f64) -> [f64; 4] {
+    let s = 1.0 - t;
+    [s, 3.0 * t - 2.0, 3.0 * s - 2.0, t]
+}
+
+/// Turns samples that repeat into coefficients, in place.
+fn filter(values: &mut [f64], [width, height]: [usize; 2]) {
+    // Columns are filtered in blocks of neighbours, transposed: a cache line holds eight of them.
+    const BLOCK: usize = 16;
+    values.par_chunks_exact_mut(width).for_each(filter_line);
+    let source: &[f64] = values;
+    let blocks: Vec<(usize, Vec<f64>)> = (0..width.div_ceil(BLOCK))
+        .into_par_iter()
+        .map(|block| {
+            let columns = block * BLOCK..((block + 1) * BLOCK).min(width);
+            let mut lines = vec![0.0; columns.len() * height];
+            for row in 0..height {
+                for (i, column) in columns.clone().enumerate() {
+                    lines[i * height + row] = source[row * width + column];
+                }
+            }
+            lines.chunks_exact_mut(height).for_each(filter_line);
+            (columns.start, lines)
+        })
+        .collect();
+    for (start, lines) in blocks {
+        for (i, line) in lines.chunks_exact(height).enumerate() {
+            for (row, value) in line.iter().enumerate() {
+                values[row * width + start + i] = *value;
+            }
+        }
+    }
+}
+
+/// The recursive filter along one line that repeats: forwards, then backwards, each started with what it would have come to.
+fn filter_line(line: &mut [f64]) {
+    let count = line.len();
+    let mut sum = 0.0;
+    for k in (0..MEMORY).rev() {
+        sum = POLE * sum + 6.0 * line[(count - 1).wrapping_sub(k % count)];
+    }
+    for value in line.iter_mut() {
+        sum = 6.0 * *value + POLE * sum;
+        *value = sum;
+    }
+    let mut next = 0.0;
+    for k in (0..MEMORY).rev() {
+        next = POLE * (next - line[k % count]);
+    }
+    for value in line.iter_mut().rev() {
+        next = POLE * (next - *value);
+        *value = next;
+    }
+}
+
+/// Unit vector of a direction.
+fn direction(i: usize) -> DVec2 {
+    DVec2::from_angle(TAU * i as f64 / DIRECTIONS as f64)
+}
+
+impl Bounds {
+    fn of(coefficients: &[f64], [width, height]: [usize; 2], step: DVec2) -> Self {
+        let row = |z: usize| &coefficients[z % height * width..][..width];
+        // Differences of the coefficients are coefficients of derivatives, whose weights add up to 1.
+        let differences = |z: usize| {
+            let rows = [0, 1, 2, 3].map(|i| row(z + i));
+            let mut most = [0.0_f64; 7];
+            for x in 0..width {
+                let c: [[f64; 4]; 4] =
+                    std::array::from_fn(|j| std::array::from_fn(|i| rows[j][(x + i) % width]));
+                let first = |line: [f64; 4]| line[1] - line[0];
+                let second = |line: [f64; 4]| line[2] - 2.0 * line[1] + line[0];
+                let third = |line: [f64; 4]| line[3] - 3.0 * line[2] + 3.0 * line[1] - line[0];
+                let down = |i: usize| [c[0][i], c[1][i], c[2][i], c[3][i]];
+                let values = [
+                    second(c[0]),
+                    first(c[1]) - first(c[0]),
+                    second(down(0)),
+                    third(c[0]),
+                    second(c[1]) - second(c[0]),
+                    second(down(1)) - second(down(0)),
+                    third(down(0)),
+                ];
+                for (most, value) in most.iter_mut().zip(values) {
+                    *most = most.max(value.abs());
+                }
+            }
+            most
+        };
+        let joined = |a: [f64; 7], b: [f64; 7]| std::array::from_fn(|i| a[i].max(b[i]));
+        let [xx, xz, zz, xxx, xxz, xzz, zzz] = (0..height)
+            .into_par_iter()
+            .map(differences)
+            .reduce(|| [0.0; 7], joined);
+        let (sx, sz) = (step.x, step.y);
+        let (xx, xz, zz) = (xx / (sx * sx), xz / (sx * sz), zz / (sz * sz));
+        let second_per_m = (xx * xx + 2.0 * xz * xz + zz * zz).sqrt();
+        let (xxx, zzz) = (xxx / sx.powi(3), zzz / sz.powi(3));
+        let (xxz, xzz) = (xxz / (sx * sx * sz), xzz / (sx * sz * sz));
+        let third_per_m2 = (xxx * xxx + 3.0 * (xxz * xxz + xzz * xzz) + zzz * zzz).sqrt();
+
+        let (seen_height, seen_slopes) = (0..height)
+            .into_par_iter()
+            .map(|z| extremes_between([0, 1, 2, 3].map(|i| row(z + i)), step))
+            .reduce(
+                || (0.0, [0.0; DIRECTIONS]),
+                |a, b| (a.0.max(b.0), std::array::from_fn(|i| a.1[i].max(b.1[i]))),
+            );
+        // Between points half a step apart, a function exceeds its bilinear interpolation by less than this.
+        let quarter = step.length_squared() / 32.0;
+        let most_coefficient = coefficients.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
+        Self {
+            height_m: most_coefficient.min(seen_height + quarter * second_per_m),
+            slopes: seen_slopes.map(|slope| slope + quarter * third_per_m2),
+            second_per_m,
+            third_per_m2,
+        }
+    }
+
+    /// The corner of the polygon around all slopes between the directions `i` and `i` + 1.
+    fn corner(&self, i: usize) -> DVec2 {
+        let (a, b) = (direction(i), direction(i + 1));
+        let (along_a, along_b) = (self.slopes[i], self.slopes[(i + 1) % DIRECTIONS]);
+        // The point whose components along a and b are these.
+        DVec2::new(along_a * b.y - along_b * a.y, along_b * a.x - along_a * b.x) / a.perp_dot(b)
+    }
+
+    /// Upper bound of the slope along the unit vector `u`.
+    fn slope_along(&self, u: DVec2) -> f64 {
+        self.corner(sector_of(u)).dot(u)
+    }
+}
+
+/// The direction before the unit vector `u`.
+fn sector_of(u: DVec2) -> usize {
+    let turns = u.y.atan2(u.x) / TAU;
+    (turns.rem_euclid(1.0) * DIRECTIONS as f64) as usize % DIRECTIONS
+}
+
+/// Largest height, and largest slope along each direction, at points half a step apart in the cells of a row.
+fn extremes_between(rows: [&[f64]; 4], step: DVec2) -> (f64, [f64; DIRECTIONS]) {
+    let width = rows[0].len();
+    let directions: [DVec2; DIRECTIONS] = std::array::from_fn(direction);
+    let (cosines, sines) = (
+        directions.map(|d| d.x / step.x),
+        directions.map(|d| d.y / step.y),
+    );
+    let mut height: f64 = 0.0;
+    let mut most = [0.0; DIRECTIONS];
+    for t in [0.0, 0.5] {
+        let (wz, dz) = (weights(t), slopes(t));
+        let across = |w: [f64; 4], x: usize| {
+            w[0] * rows[0][x] + w[1] * rows[1][x] + w[2] * rows[2][x] + w[3] * rows[3][x]
+        };
+        let values: Vec<f64> = (0..width + 3).map(|x| across(wz, x % width)).collect();
+        let downs: Vec<f64> = (0..width + 3).map(|x| across(dz, x % width)).collect();
+        for s in [0.0, 0.5] {
+            let (wx, dx) = (weights(s), slopes(s));
+            for (value, down) in values.windows(4).zip(downs.windows(4)) {
+                let of =
+                    |w: &[f64; 4], v: &[f64]| w[0] * v[0] + w[1] * v[1] + w[2] * v[2] + w[3] * v[3];
+                let (h, gx, gz) = (of(&wx, value), of(&dx, value), of(&wx, down));
+                height = height.max(h.abs());
+                for i in 0..DIRECTIONS {
+                    most[i] = f64::max(most[i], gx * cosines[i] + gz * sines[i]);
+                }
+            }
+        }
+    }
+    (height, most)
+}
