@@ -56,8 +56,10 @@ pub(crate) fn chapter(
         for (texels, waves, truth_error) in SETTINGS {
             eprintln!("  residual of {name}, {texels}² texels, waves × {waves}");
             let mut base = scene(name, WATER_CELLS, texels)?;
-            for Wave::Sine(wave) in &mut base.scene.water.waves {
-                wave.amplitude_m *= waves;
+            for wave in &mut base.scene.water.waves {
+                if let Wave::Sine(wave) = wave {
+                    wave.amplitude_m *= waves;
+                }
             }
             let settings = TruthSettings {
                 target_error: Some(truth_error),

@@ -16,6 +16,7 @@ struct Light {
     layers: u32,               // receivers of an object: its surfaces along the light, nearest first
     wide_texels: u32,          // footprints with more texels than this are shared by several workgroups
     triangle_scale: f32,       // workgroup counts per unit flux in the energy account
+    pad: u32,
     foot_m: vec2f,             // point light over the water: the local (x, z) around which the grid is finer; sun: 0
     bend_per_m2: f32,          // β of the grid's mapping: how fast cells grow with the distance from there, see vertex_m()
     kind: u32,                 // SUN, POINT or SUBMERGED

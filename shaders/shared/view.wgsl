@@ -28,6 +28,7 @@ struct View {
     sky_path_factor: f32,
     layers: u32,          // receivers of an object: its surfaces along the light, nearest first
     sample_index: u32,    // number of samples that the picture already holds
+    pad: u32,
     sample_offset: vec2f, // offset of the ray from the pixel's centre, pixels
 }
 

@@ -13,7 +13,7 @@ use super::occluders::Occluders;
 use super::tally::Tally;
 use super::trace::{Beam, Ground};
 use super::window::{LightWindow, Target, window_of};
-use super::{ReferenceError, ReferenceSettings};
+use super::{REFINEMENT, ReferenceError, ReferenceSettings};
 use crate::scene::{ResolvedScene, Scene};
 use crate::waves::Surface;
 
@@ -148,7 +148,7 @@ impl<'a, const K: usize> Counter<'a, K> {
         let scene = &resolved.scene;
         let map = FloorMap::of(scene)?;
         let occluders = Occluders::of(resolved, map.origin_m)?;
-        let surface = Surface::of(scene).recentred(map.origin_m);
+        let surface = Surface::refined(scene, REFINEMENT).recentred(map.origin_m);
         check_surface(&surface)?;
         let size_m = map.size_m();
         let mut targets = vec![Target {

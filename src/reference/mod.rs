@@ -61,3 +61,6 @@ pub use settings::{ReferenceError, ReferenceSettings, TruthSettings};
 pub use shadow_edge::shadow_edge;
 pub use truth::{Truth, TruthKind, truth};
 pub use window::{LightWindow, light_window};
+
+/// How much finer the grids of seas and basins are than the renderer's.
+const REFINEMENT: u32 = 4;

@@ -4,12 +4,12 @@ use std::cell::LazyCell;
 
 use glam::{DVec2, DVec3};
 
-use super::ReferenceError;
 use super::checks::{check_surface, check_water, point_lights, suns};
 use super::light::{PlacedLight, Source};
 use super::occluders::Occluders;
 use super::sky::Sky;
 use super::window::LampDrift;
+use super::{REFINEMENT, ReferenceError};
 use crate::scene::ResolvedScene;
 use crate::waves::{Surface, SurfacePoint};
 
@@ -65,7 +65,7 @@ impl Place {
         let scene = &resolved.scene;
         let extinction_per_m = check_water(&scene.water)?;
         let (suns, lamps) = (suns(scene)?, point_lights(scene)?);
-        let surface = Surface::of(scene).recentred(middle_m);
+        let surface = Surface::refined(scene, REFINEMENT).recentred(middle_m);
         check_surface(&surface)?;
         let occluders = Occluders::of(resolved, middle_m)?;
         let origin_m = DVec3::new(middle_m.x, scene.water.level_m, middle_m.y);

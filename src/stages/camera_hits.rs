@@ -44,6 +44,7 @@ gpu_struct! {
         sky_path_factor: f32,
         layers: u32,
         sample_index: u32,
+        pad: u32,
         sample_offset: [f32; 2],
     }
 }
@@ -145,6 +146,7 @@ fn view_uniform(facts: &SceneFacts, band: BandRun) -> Vec<u8> {
         sky_path_factor: facts.lights.sky.path_factor as f32,
         layers: facts.quality.layers,
         sample_index: band.sample_index,
+        pad: 0,
         sample_offset: band.offset.map(|o| o as f32),
     };
     bytemuck::bytes_of(&view).to_vec()

@@ -90,6 +90,14 @@ impl Grid {
     }
 }
 
+/// Most samples along a side of a refined grid.
+const MAX_REFINED: u32 = 4096;
+
+/// The refinement, or less, so that `samples` times it is at most `most`.
+fn within(most: u32, refinement: u32, samples: u32) -> u32 {
+    refinement.min(most / samples).max(1)
+}
+
 impl Surface {
     /// The surface of `scene` at `scene.time_s`; the origin is that of the scene.
     pub fn of(scene: &Scene) -> Self {
@@ -97,12 +105,19 @@ impl Surface {
     }
 
     /// The same with `refinement` times as many samples along the sides of grids, so that their splines miss less of what they stand for;
-    /// for references.
+    /// for references. Of a grid that would have more than 4096 samples along a side, the refinement is smaller.
     pub fn refined(scene: &Scene, refinement: u32) -> Self {
         let grids = scene.water.waves.iter().filter_map(|wave| match wave {
             Wave::Sine(_) | Wave::Gerstner(_) => None,
-            Wave::Spectrum(waves) => Some(sea::heights(waves, scene, refinement)),
-            Wave::Ripples(waves) => Some(ripples::heights(waves, scene, refinement)),
+            Wave::Spectrum(waves) => {
+                let refinement = within(MAX_REFINED, refinement, waves.samples);
+                Some(sea::heights(waves, scene, refinement))
+            }
+            Wave::Ripples(waves) => {
+                // Mirror images double the sides.
+                let refinement = within(MAX_REFINED, refinement, 2 * waves.samples);
+                Some(ripples::heights(waves, scene, refinement))
+            }
         });
         Self {
             sines: Sines::of(scene),

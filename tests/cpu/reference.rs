@@ -137,7 +137,10 @@ fn a_wrong_sign_of_the_slope_is_detected() {
     let pool = resolved(SINE_POOL);
     let truth = count(&pool, 4_000_000);
     let mut turned = pool.clone();
-    for Wave::Sine(wave) in &mut turned.scene.water.waves {
+    for wave in &mut turned.scene.water.waves {
+        let Wave::Sine(wave) = wave else {
+            panic!("a sine");
+        };
         // −A turns every slope around.
         wave.amplitude_m = -wave.amplitude_m;
     }
@@ -155,7 +158,10 @@ fn a_wrong_sign_of_the_slope_is_detected() {
 fn a_mirrored_scene_gives_the_mirrored_map() {
     let pool = lopsided_pool();
     let mut mirrored = pool.clone();
-    for Wave::Sine(wave) in &mut mirrored.scene.water.waves {
+    for wave in &mut mirrored.scene.water.waves {
+        let Wave::Sine(wave) = wave else {
+            panic!("a sine");
+        };
         wave.direction_deg = 180.0 - wave.direction_deg;
     }
     let sun = sun_mut(&mut mirrored.scene);

@@ -13,7 +13,9 @@ fn scenes_that_cannot_be_counted_are_errors() {
     let cases: [(&str, Spoil); 11] = [
         ("irradiance_map", |r| *r = resolved(DRY)),
         ("waves", |r| {
-            let Wave::Sine(wave) = &mut r.scene.water.waves[0];
+            let Wave::Sine(wave) = &mut r.scene.water.waves[0] else {
+                panic!("a sine");
+            };
             wave.amplitude_m = f64::NAN;
         }),
         ("irradiance_map", |r| {

@@ -35,7 +35,9 @@ fn the_example_of_the_documentation_is_read() {
         "output": { "kind": "view", "width": 960, "height": 540, "format": "png" },
         "time_s": 0.0
     }));
-    let Wave::Sine(wave) = &scene.water.waves[0];
+    let Wave::Sine(wave) = &scene.water.waves[0] else {
+        panic!("a sine");
+    };
     assert_eq!(wave.wavelength_m, 0.9);
     assert!(matches!(scene.lights[1], Light::Sky(_)));
     assert!(matches!(scene.camera, Some(Camera::Perspective(_))));

@@ -115,10 +115,10 @@ const SHAPES: &[Refusal] = &[
         "an array",
     ),
     (
-        r#"{"water": {"waves": [{"kind": "gerstner"}]}}"#,
+        r#"{"water": {"waves": [{"kind": "stokes"}]}}"#,
         "/water/waves/0/kind",
-        "unknown kind `gerstner`",
-        "`sine`",
+        "unknown kind `stokes`",
+        "`sine`, `gerstner`, `spectrum` or `ripples`",
     ),
     (
         r#"{"camera": {"kind": "fisheye"}}"#,

@@ -2,7 +2,6 @@
 
 use caustica::physics::dispersion::angular_frequency;
 use caustica::scene::{Scene, SineWave, Wave};
-use caustica::stages::surface::Wave as GpuWave;
 use caustica::waves::{ROW_POINTS, RowPoints, Surface, SurfacePoint, normal};
 use glam::DVec2;
 
@@ -19,6 +18,16 @@ fn scene(time_s: f64, period: &str) -> Scene {
         }}"#
     ))
     .unwrap()
+}
+
+fn sines(scene: &Scene) -> Vec<&SineWave> {
+    let waves = scene.water.waves.iter();
+    waves
+        .filter_map(|wave| match wave {
+            Wave::Sine(sine) => Some(sine),
+            _ => None,
+        })
+        .collect()
 }
 
 fn points() -> impl Iterator<Item = DVec2> {
@@ -133,7 +142,7 @@ fn phase_turns(surface: &Surface, wave: &SineWave) -> f64 {
 #[test]
 fn the_period_follows_from_the_depth() {
     let (late, still) = (scene(0.4, ""), scene(0.0, ""));
-    for Wave::Sine(wave) in &late.water.waves {
+    for wave in sines(&late) {
         let alone = |scene: &Scene| {
             let mut scene = scene.clone();
             scene.water.waves = vec![Wave::Sine(wave.clone())];
@@ -214,18 +223,17 @@ fn the_gpu_gets_the_waves_of_its_shaders() {
     let scene = scene(0.0, r#", "period_s": 2.5"#);
     let surface = Surface::of(&scene);
     let elements = surface.gpu_elements();
-    assert_eq!(elements.len(), scene.water.waves.len());
+    assert_eq!(elements.len(), 1 + scene.water.waves.len());
     assert_eq!(elements.len(), surface.gpu_element_count());
-    // The struct is compared with the shaders' own in another test.
-    let waves: &[GpuWave] = bytemuck::cast_slice(&elements);
-    for (gpu, Wave::Sine(wave)) in waves.iter().zip(&scene.water.waves) {
+    assert_eq!(elements[0], [3.0, 0.0, 0.0, 0.0]);
+    for (gpu, wave) in elements[1..].iter().zip(sines(&scene)) {
         let per_m = DVec2::from_angle(wave.direction_deg.to_radians()) / wave.wavelength_m;
         let turns = wave.phase_deg / 360.0;
         for (got, expected) in [
-            (gpu.amplitude_m, wave.amplitude_m),
-            (gpu.frequency_x_per_m, per_m.x),
-            (gpu.frequency_z_per_m, per_m.y),
-            (gpu.phase_turns, turns - turns.round()),
+            (gpu[0], wave.amplitude_m),
+            (gpu[1], per_m.x),
+            (gpu[2], per_m.y),
+            (gpu[3], turns - turns.round()),
         ] {
             assert!((f64::from(got) - expected).abs() < 1e-6, "{gpu:?}");
         }
@@ -270,4 +278,83 @@ fn flat_water_has_no_rim() {
     assert_eq!(surface.max_height_m(), 0.0);
     assert_eq!(surface.max_slope(), 0.0);
     assert_eq!(surface.at(3.0, 4.0).slope, DVec2::ZERO);
+}
+
+fn gerstner(fields: &str) -> Scene {
+    serde_json::from_str(&format!(
+        r#"{{ "water": {{ "waves": [{{ "kind": "gerstner", "amplitude_m": 0.05, "wavelength_m": 1.2, {fields} }}] }} }}"#
+    ))
+    .unwrap()
+}
+
+/// Points of the trochoid x = (α − s sin α)/k, h = A cos α + ½ s A lie on the surface, with its slope −A k sin α/(1 − s cos α).
+#[test]
+fn gerstner_waves_are_trochoids() {
+    for (steepness, direction_deg) in [(0.0, 0.0), (0.3, 40.0), (0.8, -130.0), (0.95, 90.0)] {
+        let fields = format!(
+            r#""steepness": {steepness}, "direction_deg": {direction_deg}, "phase_deg": 30"#
+        );
+        let surface = Surface::of(&gerstner(&fields));
+        let (amplitude_m, k) = (0.05, std::f64::consts::TAU / 1.2);
+        let along = DVec2::from_angle(f64::to_radians(direction_deg));
+        let mut mean = 0.0;
+        for i in 0..720 {
+            let alpha = f64::from(i).to_radians() * 0.5 - 3.0;
+            let x = (alpha - steepness * alpha.sin() - 30_f64.to_radians()) / k;
+            let p = along * x + along.perp() * f64::from(i);
+            let (point, _) = surface.curved_at(p.x, p.y);
+            let height_m = amplitude_m * (alpha.cos() + 0.5 * steepness);
+            assert!((point.height_m - height_m).abs() < 1e-12, "{steepness} {i}");
+            let slope = -amplitude_m * k * alpha.sin() / (1.0 - steepness * alpha.cos());
+            assert!(
+                (point.slope - along * slope).length() < 1e-10,
+                "{steepness} {i}"
+            );
+            assert_eq!(surface.at(p.x, p.y), point);
+            mean += height_m * (1.0 - steepness * alpha.cos()) / 720.0;
+        }
+        assert!(mean.abs() < 1e-15, "{mean}");
+        assert!(surface.max_height_m() >= amplitude_m * (1.0 + 0.5 * steepness));
+        let steepest = amplitude_m * k / (1.0 - steepness * steepness).sqrt();
+        assert!((surface.max_slope() / steepest - 1.0).abs() < 1e-12);
+    }
+    // Without a steepness, points move on circles: s = k A. With 0 it is a sine.
+    let (plain, sine) = (
+        Surface::of(&gerstner(r#""phase_deg": 0"#)),
+        Surface::of(&gerstner(r#""steepness": 0"#)),
+    );
+    let k_a = std::f64::consts::TAU * 0.05 / 1.2;
+    assert!((plain.at(0.0, 0.0).height_m - 0.05 * (1.0 + 0.5 * k_a)).abs() < 1e-12);
+    assert!(
+        (sine.at(0.2, 0.0).height_m - 0.05 * (std::f64::consts::TAU / 6.0).cos()).abs() < 1e-12
+    );
+}
+
+#[test]
+fn gerstner_waves_run_and_keep_to_their_bounds() {
+    let at = |time_s: f64| {
+        let mut scene = gerstner(r#""steepness": 0.9, "period_s": 2, "direction_deg": 20"#);
+        scene.time_s = time_s;
+        Surface::of(&scene)
+    };
+    let (start, quarter, later) = (at(0.0), at(0.5), at(1e9 + 0.5));
+    let along = DVec2::from_angle(20_f64.to_radians()) * 0.3;
+    let h = 1e-5;
+    for p in points() {
+        let moved = start.at(p.x - along.x, p.y - along.y).height_m;
+        assert!((quarter.at(p.x, p.y).height_m - moved).abs() < 1e-12);
+        assert!((later.at(p.x, p.y).height_m - moved).abs() < 1e-9);
+        let (point, curvature) = start.curved_at(p.x, p.y);
+        let slope = |d: DVec2| start.at(p.x + d.x, p.y + d.y).slope;
+        let numeric = (slope(DVec2::X * h) - slope(DVec2::NEG_X * h)) / (2.0 * h);
+        // Third derivatives reach 10⁵/m² at the crests.
+        assert!(
+            (numeric.x - curvature.xx_per_m).abs() < 1e-3 * start.max_second_derivative_per_m()
+        );
+        assert!(curvature.largest_per_m() <= start.max_second_derivative_per_m() * (1.0 + 1e-12));
+        assert!(point.height_m.abs() <= start.max_height_m());
+        assert!(point.slope.length() <= start.max_slope());
+        let recentred = start.recentred(DVec2::new(1e6, -2e6) + p).at(-1e6, 2e6);
+        assert!((recentred.height_m - point.height_m).abs() < 1e-7);
+    }
 }

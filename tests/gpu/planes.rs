@@ -294,7 +294,9 @@ fn a_slope_under_tilted_water_is_off_by_its_closed_form() {
             let output = json!({ "kind": "irradiance_map", "receiver": 0 });
             let mut resolved = under_waves("plate", quality, output);
             resolved.scene.water.waves.truncate(1);
-            let Wave::Sine(wave) = &mut resolved.scene.water.waves[0];
+            let Wave::Sine(wave) = &mut resolved.scene.water.waves[0] else {
+                panic!("a sine");
+            };
             wave.wavelength_m = WAVELENGTH_M;
             wave.amplitude_m = SLOPE * WAVELENGTH_M / std::f64::consts::TAU;
             wave.direction_deg = wave_deg;
