@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Most text that waits for a reader, bytes.
+/// No further text is taken while this much waits for a reader, bytes. One text may be longer.
 const MAX_WAITING_BYTES: usize = 4 << 20;
 
 /// At the end of the process, how long to wait for a reader that takes nothing.
@@ -109,7 +109,7 @@ impl Log {
             return;
         }
         let mut queue = self.shared.lock();
-        if queue.bytes + text.len() > MAX_WAITING_BYTES {
+        if queue.bytes >= MAX_WAITING_BYTES {
             self.shared.count_dropped();
             return;
         }

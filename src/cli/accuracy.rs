@@ -6,7 +6,7 @@ use clap::Args;
 use tokio_util::sync::CancellationToken;
 
 use super::error::CliError;
-use super::notes::say;
+use super::notes::{say, say_notes};
 use super::progress::Progress;
 use super::scene_file;
 use super::scene_flags::SceneArgs;
@@ -68,6 +68,7 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
     // Check this before the reference is computed, which may take minutes.
     sweep::check(resolved, &settings, limits).map_err(|error| refused(args, error))?;
     std::fs::create_dir_all(&args.output).map_err(|e| CliError::write(&args.output, e))?;
+    say_notes(&scene.notes);
     let progress = Progress::new();
     progress.say("the float64 truth");
     let truth_settings = TruthSettings {

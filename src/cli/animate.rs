@@ -12,7 +12,7 @@ use super::batch::Batch;
 use super::error::CliError;
 use super::frame_pattern::FramePattern;
 use super::frames::FrameSet;
-use super::notes::say;
+use super::notes::{say, say_notes};
 use super::scene_flags::SceneArgs;
 use super::{files, picture, scene_file, summary};
 use crate::config::{Limits, RenderConfig};
@@ -66,6 +66,9 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
     let paths: Vec<PathBuf> = frame_paths(args);
     let format = files::format_of(&paths[0])?;
     let mut scene = scene_file::load(&args.scene, Some(format), limits)?;
+    for path in &paths {
+        files::refuse_scene_file("a frame", path, &args.scene.scene)?;
+    }
     let times_s = frame_times(args, &scene.resolved, limits)?;
     output_files::clear_leftovers(paths.iter().map(PathBuf::as_path));
     let mut missing = Vec::new();
@@ -75,9 +78,7 @@ pub fn run(args: &AnimateArgs, config: &RenderConfig, limits: &Limits) -> Result
             missing.push((*frame, time_s, path));
         }
     }
-    for note in &scene.notes {
-        say(format!("note: {note}"));
-    }
+    say_notes(&scene.notes);
     if let Some((_, _, path)) = missing.first() {
         // Frames that are all there need no place that can be written to.
         files::check_place(path)?;
@@ -130,7 +131,11 @@ fn frame_times(
 }
 
 /// Whether `path` is a complete picture of this scene at this time, by the scene's hash in its metadata.
-fn is_rendered(path: &Path, scene_hash: &str) -> bool {
+pub fn is_rendered(path: &Path, scene_hash: &str) -> bool {
+    // Reading a pipe or a device may wait for ever.
+    if !std::fs::metadata(path).is_ok_and(|about| about.is_file()) {
+        return false;
+    }
     let Ok(bytes) = std::fs::read(path) else {
         return false;
     };

@@ -62,7 +62,7 @@ pub fn main() -> ExitCode {
     let done = match Cli::try_parse() {
         Ok(cli) => run(cli),
         Err(answer) if answer.use_stderr() => {
-            notes::say(in_colours(&answer));
+            notes::say_coloured(in_colours(&answer));
             notes::flush();
             return ExitCode::from(EXIT_REFUSED);
         }

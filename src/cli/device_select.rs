@@ -6,8 +6,10 @@
 //! this layer alone. A process may not change its own environment safely, so the program replaces itself: same process, same
 //! arguments, one more variable.
 
-/// Starts the program again with the layer off, if the layer would print an error. Returns if that is not needed or not possible; the
-/// worst that happens then is the printed line.
+/// Starts the program again with the layer off, if the layer would print an error. Returns if that is not needed or not possible.
+///
+/// The line still appears where the user asks the layer for a device (`DRI_PRIME`, `MESA_VK_DEVICE_SELECT`), where `/proc` is missing, and
+/// where the loader was started with the program as its argument (`ld.so caustica`).
 pub(super) fn without_device_select() {
     #[cfg(target_os = "linux")]
     linux::without_device_select();

@@ -27,7 +27,8 @@ impl Destination {
         }
     }
 
-    /// The image format that the name asks for. `None` if it asks for none: stdout, and devices and pipes without an extension.
+    /// The image format that the name asks for. `None` if it asks for none: stdout, and devices, pipes and open
+    /// files (`/dev/fd/3`) without an extension.
     ///
     /// # Errors
     ///
@@ -38,7 +39,7 @@ impl Destination {
         };
         let is_stream =
             std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir());
-        if is_stream && path.extension().is_none() {
+        if (is_stream || output_files::is_open_file(path)) && path.extension().is_none() {
             return Ok(None);
         }
         format_of(path).map(Some)
@@ -114,6 +115,22 @@ pub fn check_place(path: &Path) -> Result<(), CliError> {
         return refused(format!("there is no directory {}", folder.display()));
     }
     output_files::check(path).map_err(failed)
+}
+
+/// Refuses `path` if it leads to the scene file, which would be overwritten; `what` is what is to be written there.
+///
+/// # Errors
+///
+/// [`CliError::Usage`].
+pub fn refuse_scene_file(what: &str, path: &Path, scene: &Path) -> Result<(), CliError> {
+    let is_stream = [path, scene].contains(&Path::new("-"));
+    if !is_stream && output_files::is_same_file(path, scene) {
+        let path = path.display();
+        return Err(CliError::Usage(format!(
+            "{what} would overwrite the scene file, to which {path} leads; accepted: another file"
+        )));
+    }
+    Ok(())
 }
 
 /// The image format of a file's extension.

@@ -1,10 +1,13 @@
 //! Finds and reads the MTL files that an OBJ file names.
 
+use std::collections::BTreeSet;
 use std::fs;
-use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use crate::mesh::obj;
+
+/// Most `mtllib` lines of an OBJ file that are followed.
+const MOST_LIBRARIES: usize = 100;
 
 /// Reads the MTL files of `obj`, which was read from `path`, in the order in which it names them, each once.
 ///
@@ -13,37 +16,64 @@ use crate::mesh::obj;
 /// what was not found.
 pub fn read(obj: &[u8], path: &Path, scene_folder: &Path, notes: &mut Vec<String>) -> Vec<Vec<u8>> {
     let place = Place {
-        beside: normal(path.parent().unwrap_or(Path::new(""))),
-        scene: normal(scene_folder),
+        beside: real(path.parent().unwrap_or(Path::new(""))),
+        scene: real(scene_folder),
     };
     let mut files = Vec::new();
-    let mut known: Vec<PathBuf> = Vec::new();
-    for names in obj::material_libraries(obj) {
-        for name in place.split(&names) {
+    let mut known: BTreeSet<PathBuf> = BTreeSet::new();
+    let named = obj::material_libraries(obj);
+    if named.len() > MOST_LIBRARIES {
+        notes.push(format!(
+            "{}: only the first {MOST_LIBRARIES} of {} lines `mtllib` are read",
+            path.display(),
+            named.len()
+        ));
+    }
+    for names in named.iter().take(MOST_LIBRARIES) {
+        for name in place.split(names) {
             let found = place.find(name);
-            if known.contains(&found) {
+            if !known.insert(found.clone()) {
                 continue;
             }
+            let shown = shorten(name);
             match fs::read(&found) {
                 Ok(bytes) => {
                     if !place.is_inside(name) {
                         notes.push(format!(
-                            "{}: the material library `{name}` is outside of the scene's folder; `{}` beside the OBJ file was read instead",
+                            "{}: the material library `{shown}` is outside of the scene's folder; `{}` beside the OBJ file was read instead",
                             path.display(),
-                            last_part(name)
+                            shorten(last_part(name))
                         ));
                     }
                     files.push(bytes);
-                    known.push(found);
                 }
-                Err(error) => notes.push(place.not_read(path, name, &error)),
+                Err(error) => notes.push(format!(
+                    "{}: the material library `{shown}` cannot be read as {}: {error}",
+                    path.display(),
+                    shorten(&found.display().to_string())
+                )),
             }
         }
     }
     files
 }
 
-/// Where the files of a mesh may be. The paths are normal: without `.` and, but for leading ones, `..`.
+/// At most 200 characters of a name, for notes.
+fn shorten(name: &str) -> String {
+    name.chars().take(200).collect()
+}
+
+/// A folder without links, so that folders can be compared; as it is given if it does not exist.
+fn real(folder: &Path) -> PathBuf {
+    let given = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    fs::canonicalize(given).unwrap_or_else(|_| normal(folder))
+}
+
+/// Where the files of a mesh may be.
 struct Place {
     /// The folder of the OBJ file.
     beside: PathBuf,
@@ -53,34 +83,41 @@ struct Place {
 
 impl Place {
     /// The names in what follows an `mtllib`: the whole text if there is such a file, because names may contain spaces; else what ends
-    /// in `.mtl`; else the words, if one of them is a file.
+    /// in `.mtl`; else the words, if one of them is a file. Quotes around a name and a comment after it do not belong to it.
     fn split<'a>(&self, names: &'a str) -> Vec<&'a str> {
+        let uncommented = names.split(" #").next().unwrap_or(names).trim_ascii();
         let splits = [
             vec![names],
-            after_extensions(names),
-            names.split_ascii_whitespace().collect(),
+            vec![unquoted(uncommented)],
+            after_extensions(uncommented),
+            uncommented.split_ascii_whitespace().map(unquoted).collect(),
         ];
         let is_file = |name: &&str| self.find(name).is_file();
         splits
             .into_iter()
             .find(|split| split.iter().any(is_file))
-            .unwrap_or_else(|| after_extensions(names))
+            .unwrap_or_else(|| after_extensions(uncommented))
     }
 
-    /// The file of a name.
+    /// The file of a name. If there is none, a file of the same name in other capitals, as Windows would find it.
     fn find(&self, name: &str) -> PathBuf {
-        self.inside(name)
-            .unwrap_or_else(|| self.beside.join(last_part(name)))
+        let path = self
+            .inside(name)
+            .unwrap_or_else(|| self.beside.join(last_part(name)));
+        if path.exists() {
+            return path;
+        }
+        in_other_capitals(&path).unwrap_or(path)
     }
 
     fn is_inside(&self, name: &str) -> bool {
         self.inside(name).is_some()
     }
 
-    /// The path of a name, if it is relative and stays inside.
+    /// The path of a name, if it stays inside.
     fn inside(&self, name: &str) -> Option<PathBuf> {
         let name = name.replace('\\', "/");
-        if name.starts_with('/') || name.contains([':', '\0']) {
+        if name.contains([':', '\0']) {
             return None;
         }
         let path = normal(&self.beside.join(name));
@@ -89,15 +126,27 @@ impl Place {
             .any(|folder| is_in(&path, folder))
             .then_some(path)
     }
+}
 
-    fn not_read(&self, path: &Path, name: &str, error: &io::Error) -> String {
-        let found = self.find(name);
-        format!(
-            "{}: the material library `{name}` cannot be read as {}: {error}",
-            path.display(),
-            found.display()
-        )
-    }
+/// A name without quotes around it.
+fn unquoted(name: &str) -> &str {
+    let inner = name
+        .strip_prefix('"')
+        .and_then(|name| name.strip_suffix('"'));
+    inner.unwrap_or(name)
+}
+
+/// The file in the folder of `path` whose name differs in capitals only; of several the first in order.
+fn in_other_capitals(path: &Path) -> Option<PathBuf> {
+    let wanted = path.file_name()?.to_str()?.to_lowercase();
+    let entries = fs::read_dir(path.parent()?).ok()?;
+    entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| {
+            let name = path.file_name().and_then(|name| name.to_str());
+            name.is_some_and(|name| name.to_lowercase() == wanted)
+        })
+        .min()
 }
 
 /// Splits where a name ends in `.mtl`.
@@ -107,11 +156,11 @@ fn after_extensions(names: &str) -> Vec<&str> {
     for (end, _) in names.match_indices(|c: char| c.is_ascii_whitespace()) {
         let name = &names[start..end];
         if name.to_ascii_lowercase().ends_with(".mtl") {
-            split.push(name.trim_ascii());
+            split.push(unquoted(name.trim_ascii()));
             start = end;
         }
     }
-    split.push(names[start..].trim_ascii());
+    split.push(unquoted(names[start..].trim_ascii()));
     split.retain(|name| !name.is_empty());
     split
 }

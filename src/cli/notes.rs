@@ -12,9 +12,27 @@ use crate::log;
 static BAR: Mutex<Option<WeakProgressBar>> = Mutex::new(None);
 
 /// Writes text to stderr, and a line end if it has none. Never waits and never fails; on a terminal the text appears above the
-/// progress bar.
+/// progress bar. Control characters are replaced, as [`printable`] has it.
 pub fn say(text: impl Into<String>) {
-    let mut text = text.into();
+    let text: String = text.into();
+    say_coloured(printable(&text));
+}
+
+/// Says notes about the meshes of a scene.
+pub(super) fn say_notes(notes: &[String]) {
+    for note in notes {
+        say(format!("note: {note}"));
+    }
+}
+
+/// The text with U+FFFD for each control character but line end and tab: names in files of others would control the terminal.
+pub fn printable(text: &str) -> String {
+    let is_replaced = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    text.replace(is_replaced, "\u{fffd}")
+}
+
+/// The same as [`say`] for a text of the program's own, which may have colours.
+pub(super) fn say_coloured(mut text: String) {
     if !text.ends_with('\n') {
         text.push('\n');
     }

@@ -9,7 +9,7 @@ use tokio_util::sync::CancellationToken;
 use super::error::CliError;
 use super::scene_flags::SceneArgs;
 use super::summary::{bytes, columns, predicted};
-use super::{files, scene_file};
+use super::{files, notes, scene_file};
 use crate::config::{Limits, RenderConfig};
 use crate::plan::Plan;
 use crate::plan::{NothingCached, Wanted, plan_scene};
@@ -34,6 +34,7 @@ pub struct PlanArgs {
 /// A bad scene, or a plan over the memory budget.
 pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let scene = scene_file::load(&args.scene, None, limits)?;
+    notes::say_notes(&scene.notes);
     let prepared = Prepared::new(scene.resolved).map_err(RenderError::from)?;
     let plan = if prepared.asks_for_dials() {
         // Dials are chosen by trial renders.

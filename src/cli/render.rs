@@ -11,6 +11,7 @@ use super::notes::say;
 use super::scene_flags::SceneArgs;
 use super::{picture, scene_file, summary};
 use crate::config::{Limits, RenderConfig};
+use crate::output_files;
 use crate::render::{Prepared, RenderError, Renderer};
 
 /// What to render, and where to write it.
@@ -41,6 +42,17 @@ pub fn run(args: &RenderArgs, config: &RenderConfig, limits: &Limits) -> Result<
         return Err(CliError::Usage(
             "--output and --stats are both stdout; accepted: stdout for one of them".to_owned(),
         ));
+    }
+    let scene = &args.scene.scene;
+    files::refuse_scene_file("--output", &args.output, scene)?;
+    if let Some(stats) = &args.stats {
+        files::refuse_scene_file("--stats", stats, scene)?;
+        if output_files::is_same_file(&args.output, stats) {
+            return Err(CliError::Usage(format!(
+                "--output and --stats both lead to {}; accepted: a file for each",
+                stats.display()
+            )));
+        }
     }
     let format = output.format()?;
     for place in std::iter::once(&output).chain(&stats) {

@@ -151,21 +151,26 @@ pub fn bytes(count: u64) -> String {
     format!("{count} B")
 }
 
+/// Widest column that shorter cells are padded to. A longer cell, such as a long name, moves only its own row.
+const MAX_WIDTH: usize = 200;
+
 /// Rows with aligned columns, each indented by `indent`.
 pub fn columns(rows: &[Vec<String>], indent: &str) -> String {
-    let width_of = |column: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(column));
-        cells
-            .map(|cell| cell.chars().count())
-            .max()
-            .unwrap_or_default()
-    };
+    let most = rows.iter().map(Vec::len).max().unwrap_or_default();
+    let mut widths = vec![0_usize; most];
+    for row in rows {
+        for (width, cell) in widths.iter_mut().zip(row) {
+            *width = cell.chars().count().min(MAX_WIDTH).max(*width);
+        }
+    }
     let mut text = String::new();
     for row in rows {
         let mut line = indent.to_owned();
-        for (column, cell) in row.iter().enumerate() {
-            let width = width_of(column);
-            let _ = write!(line, "{cell:width$}  ");
+        if let Some((last, cells)) = row.split_last() {
+            for (cell, &width) in cells.iter().zip(&widths) {
+                let _ = write!(line, "{cell:width$}  ");
+            }
+            line.push_str(last);
         }
         let _ = writeln!(text, "{}", line.trim_end());
     }

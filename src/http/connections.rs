@@ -1,7 +1,8 @@
 //! The connections of the service: how many there are, and how long one may do nothing.
 //!
-//! A connection is *busy* from the end of a request's header until the answer has been sent. Otherwise it is *waiting*; such a
-//! connection is closed after a time, or to make room for another.
+//! A connection is *busy* from the end of a request's header until the answer has been sent, unless the service needs more of the
+//! request's body and the client sends none. Otherwise it is *waiting*; such a connection is closed after a time, or to make room for
+//! another.
 
 mod watch;
 mod wire;
@@ -27,7 +28,7 @@ use tower::ServiceExt as _;
 
 pub(super) use self::watch::CloseReason;
 use self::watch::{Open, Watch};
-use self::wire::{Answer, End, Socket};
+use self::wire::{Answer, Arriving, End, Socket};
 use super::metrics::Metrics;
 
 /// The header of a request has to be complete within this time, if not earlier.
@@ -47,7 +48,7 @@ const WARNING_PERIOD: Duration = Duration::from_secs(10);
 pub struct ConnectionLimits {
     /// Most connections; one more takes the place of the one that has waited longest.
     pub most: u32,
-    /// How long a connection may wait for a request, and a client for reading its answer.
+    /// How long a connection may wait for a request or for more of its body, and how long a client may not read its answer.
     pub idle: Duration,
 }
 
@@ -103,7 +104,6 @@ pub async fn serve(
             open: Arc::clone(&open),
             metrics,
             limits,
-            reason: None,
             _place: place,
         };
         metrics.connected();
@@ -132,13 +132,11 @@ struct Connection {
     open: Arc<Open>,
     metrics: Metrics,
     limits: ConnectionLimits,
-    /// Why the service closes it, if it does.
-    reason: Option<CloseReason>,
     _place: OwnedSemaphorePermit,
 }
 
 impl Connection {
-    async fn serve(mut self, stream: TcpStream, app: Router, closing: CancellationToken) {
+    async fn serve(self, stream: TcpStream, app: Router, closing: CancellationToken) {
         let watch = Arc::clone(&self.watch);
         let socket = Socket {
             stream,
@@ -157,7 +155,8 @@ impl Connection {
             let mut next = now + header;
             match deadline {
                 Some((deadline, reason)) if deadline <= now => {
-                    self.reason = Some(reason);
+                    // Counted before the client can notice.
+                    self.metrics.closed(reason);
                     return;
                 }
                 Some((deadline, _)) => next = next.min(deadline),
@@ -166,7 +165,12 @@ impl Connection {
             tokio::select! {
                 biased;
                 // An error concerns this client only, who sees it: a broken header is answered, the rest are breaks of the line.
-                _ = http.as_mut() => return,
+                _ = http.as_mut() => {
+                    if watch.is_evicted() {
+                        self.metrics.closed(CloseReason::Evicted);
+                    }
+                    return;
+                }
                 () = watch.evicted.notified() => {}
                 () = closing.cancelled(), if !ends => {
                     ends = true;
@@ -183,7 +187,7 @@ impl Connection {
 impl Drop for Connection {
     fn drop(&mut self) {
         self.open.leave(&self.watch);
-        self.metrics.disconnected(self.reason);
+        self.metrics.disconnected();
     }
 }
 
@@ -200,8 +204,9 @@ async fn answer(
     if !watch.begin() {
         return Err(Closed);
     }
-    let end = End(watch);
-    let answered = app.oneshot(request.map(Body::new)).await;
+    let end = End(Arc::clone(&watch));
+    let request = request.map(|body| Body::new(Arriving { body, watch }));
+    let answered = app.oneshot(request).await;
     let response = answered.unwrap_or_else(|never: Infallible| match never {});
     Ok(response.map(|body| Answer { body, _end: end }))
 }

@@ -63,12 +63,14 @@ impl Metrics {
         gauge!(CONNECTIONS).increment(1.0);
     }
 
-    /// Counts a connection out. `reason` is given if the service has closed it.
-    pub(super) fn disconnected(self, reason: Option<CloseReason>) {
+    /// Counts a connection out.
+    pub(super) fn disconnected(self) {
         gauge!(CONNECTIONS).decrement(1.0);
-        if let Some(reason) = reason {
-            counter!(CONNECTIONS_CLOSED, "reason" => reason.word()).increment(1);
-        }
+    }
+
+    /// Counts a connection that the service closes.
+    pub(super) fn closed(self, reason: CloseReason) {
+        counter!(CONNECTIONS_CLOSED, "reason" => reason.word()).increment(1);
     }
 
     /// Records a finished render, from arrival to the encoded file.
@@ -144,8 +146,8 @@ fn describe() {
     describe_gauge!(CONNECTIONS, "Open connections.");
     describe_counter!(
         CONNECTIONS_CLOSED,
-        "Connections that the service closed, by reason; idle: no request for too long; evicted: no request, and another \
-         connection needed the place; stalled: the client did not read its answer."
+        "Connections that the service closed, by reason; idle: no request, or a part of one, for too long; evicted: the same, and \
+         another connection needed the place; stalled: the client did not read its answer."
     );
     describe_counter!(
         LOG_LINES_DROPPED,

@@ -59,7 +59,7 @@ pub fn layered(routes: Router<AppState>, state: AppState) -> Router {
         .layer(PropagateRequestIdLayer::x_request_id())
         .layer(SetRequestIdLayer::x_request_id(MakeRequestUuid))
         .with_state(state);
-    // Only a router around this one can change the path by which this one finds its route.
+    // The path has to be changed before a route is looked up, and layers of a router run after that. So there is a router around it.
     Router::new()
         .fallback_service(app)
         .layer(map_request(without_last_slash))

@@ -92,6 +92,7 @@ pub fn encode(
         let value = AttributeValue::Text(text(key, value)?);
         shared.other.insert(text(key, key)?, value);
     }
+    warnings.extend(coarse_camera(frame));
     let own = LayerAttributes {
         software_name: Some(text("software", &metadata.software())?),
         comments: Some(text("comments", &format!("linear; {}", holds.join("; ")))?),
@@ -114,6 +115,24 @@ pub fn encode(
         bytes,
         media_type: MEDIA_TYPE,
         warnings,
+    })
+}
+
+/// Distance by which the camera of the header may be off without a warning, m.
+const COARSE_CAMERA_M: f64 = 1e-3;
+
+/// The warning that the header's camera is off, because OpenEXR stores matrices in single precision.
+fn coarse_camera(frame: &Frame) -> Option<Warning> {
+    let projection = frame.projection.as_ref()?;
+    let stored = projection.world_to_camera().as_mat4().as_dmat4();
+    let off_m = stored.transform_point3(projection.eye_m).length();
+    (off_m > COARSE_CAMERA_M).then(|| {
+        Warning::new(
+            "exr_camera_coarse",
+            format!(
+                "worldToCamera and worldToNDC of the EXR header are off by {off_m:.3} m, because they are single precision and the camera is far from the world's origin; camera in caustica:stats is exact"
+            ),
+        )
     })
 }
 

@@ -53,7 +53,7 @@ pub fn format_of(name: LayerName) -> LayerFormat {
             word: "seen_depth",
             exr_channels: &["seen.Z"],
             follows_exr_pixel: false,
-            holds: "seen.Z: distance along the viewing axis to P, the surface seen (it may lie behind the water), m, 1e10 where none is seen",
+            holds: "seen.Z: distance along the viewing axis to P, the surface seen (it may lie behind the water, or be mirrored in it and then have any sign), m, 1e10 where none is seen",
         },
         LayerName::Normal => LayerFormat {
             word: "normal",

@@ -76,7 +76,8 @@ pub enum MeshError {
     },
     /// A concave polygon with too many corners.
     #[error(
-        "OBJ line {line}: the polygon is concave and has {corners} corners; accepted are {limit}; triangulate it"
+        "OBJ line {line}: a concave polygon of {corners} corners is too much to cut into triangles; accepted are {limit} corners, and \
+         fewer where a mesh has many such polygons; triangulate the mesh"
     )]
     PolygonTooLarge {
         /// The line of the face.

@@ -1,10 +1,9 @@
 //! MTL: the diffuse reflectance `Kd` is read. All else that would change the look is named in warnings.
 
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Material;
-use super::text::{Lines, Skipped, keyword_of, number, shorten, words};
+use super::text::{Lines, Skipped, Statement, keyword_of, names_in, number, shorten, words};
 use crate::stats::Warning;
 
 /// Diffuse reflectance if the files have none.
@@ -15,11 +14,16 @@ pub(crate) const CLAMPED: &str = "mesh_material_clamped";
 /// Most materials that a warning names.
 const MOST_NAMED: usize = 5;
 
+/// Most unused statements of a material that are kept for its warnings.
+const MOST_STATEMENTS: usize = 4;
+
 /// The result of reading one or more MTL files.
 #[derive(Debug, Default)]
 pub(super) struct MtlScan {
-    /// Materials in the order of the files; each name once.
+    /// Materials that the OBJ uses, in the order of the files; each name once.
     pub(super) materials: Vec<FileMaterial>,
+    /// Number of materials in the files.
+    pub(super) count: usize,
     /// What was left out.
     pub(super) warnings: Vec<Warning>,
     place_of: BTreeMap<String, usize>,
@@ -33,7 +37,7 @@ pub(super) struct FileMaterial {
     /// `Kd`, not yet clamped.
     pub(super) diffuse: Option<[f64; 3]>,
     /// Statements that are not used, by what they would change.
-    unused: BTreeMap<Look, String>,
+    unused: BTreeMap<Look, Vec<String>>,
 }
 
 /// What a statement that is not used would change.
@@ -76,43 +80,51 @@ impl MtlScan {
     }
 }
 
-/// Reads MTL files. Of several materials with the same name, the last one of the first file that has it counts. Nothing in an MTL is
-/// an error: what cannot be read is left out with a warning.
-pub(super) fn scan(files: &[&[u8]]) -> MtlScan {
+/// Reads the materials `used` from MTL files. Of several materials with the same name, the last one of the first file that has it counts.
+/// Nothing in an MTL is an error: what cannot be read is left out with a warning.
+pub(super) fn scan(files: &[&[u8]], used: &BTreeSet<&str>) -> MtlScan {
     let mut scan = MtlScan::default();
     let mut unreadable = Skipped::default();
     let mut spectra = Skipped::default();
     let mut repeated = Skipped::default();
     for file in files {
         let of_earlier_files = scan.materials.len();
-        let mut current: Option<usize> = None;
-        let mut is_repeated = false;
+        let mut current = Current::None;
         let lines = Lines::of(file);
-        for (line, text) in lines.numbered() {
+        for Statement { line, text } in lines.statements(may_go_on) {
             let (keyword, rest) = keyword_of(&text);
-            if keyword == "newmtl" {
-                current = begin(&mut scan, rest, of_earlier_files);
-                is_repeated = current.is_none();
-                if is_repeated {
+            if keyword.eq_ignore_ascii_case("newmtl") {
+                scan.count += 1;
+                current = begin(&mut scan, rest, used, of_earlier_files);
+                if matches!(current, Current::Repeated) {
                     repeated.add(|| format!("`{}` on line {line}", shorten(rest)));
                 }
                 continue;
             }
-            let material = current.map(|place| &mut scan.materials[place]);
-            if keyword == "Kd" {
-                match (diffuse(rest), material) {
+            let is_diffuse = keyword.eq_ignore_ascii_case("kd");
+            let material = match current {
+                Current::Used(place) => &mut scan.materials[place],
+                Current::None if is_diffuse => {
+                    unreadable.add(|| format!("line {line} (`{keyword} {}`)", shorten(rest)));
+                    continue;
+                }
+                _ => continue,
+            };
+            if is_diffuse {
+                match diffuse(rest) {
                     _ if rest.starts_with("spectral") || rest.starts_with("xyz") => {
                         spectra.add(|| format!("on line {line}"));
                     }
-                    (Some(values), Some(material)) => material.diffuse = Some(values),
-                    (Some(_), None) if is_repeated => {}
-                    _ => unreadable.add(|| format!("line {line} (`Kd {}`)", shorten(rest))),
+                    Some(values) => material.diffuse = Some(values),
+                    None => {
+                        unreadable.add(|| format!("line {line} (`{keyword} {}`)", shorten(rest)));
+                    }
                 }
-            } else if let (Some(look), Some(material)) = (look_of(keyword, rest), material) {
+            } else if let Some(look) = look_of(&keyword.to_ascii_lowercase(), rest) {
                 let statements = material.unused.entry(look).or_default();
-                let separator = if statements.is_empty() { "" } else { ", " };
-                // Writing to a string cannot fail.
-                let _ = write!(statements, "{separator}`{} {}`", keyword, shorten(rest));
+                if statements.len() < MOST_STATEMENTS {
+                    statements.push(format!("`{keyword} {}`", shorten(rest)));
+                }
             }
         }
     }
@@ -131,10 +143,42 @@ pub(super) fn scan(files: &[&[u8]]) -> MtlScan {
     scan
 }
 
-/// The material that `newmtl` begins; `None` if an earlier file has it. One without a name is never used by an OBJ.
-fn begin(scan: &mut MtlScan, name: &str, of_earlier_files: usize) -> Option<usize> {
+/// Whether a line may be joined with the next one: not comments and names.
+fn may_go_on(line: &str) -> bool {
+    let (keyword, _) = keyword_of(line);
+    !keyword.starts_with('#') && !keyword.eq_ignore_ascii_case("newmtl")
+}
+
+/// The material that the lines of a file belong to.
+#[derive(Clone, Copy)]
+enum Current {
+    /// Before the first `newmtl`.
+    None,
+    /// One that the OBJ uses, by its place.
+    Used(usize),
+    /// One that an earlier file has.
+    Repeated,
+    /// One that the OBJ does not use.
+    Unused,
+}
+
+/// The material that `newmtl` begins. Its name ends before a comment if the OBJ knows it so.
+fn begin(
+    scan: &mut MtlScan,
+    rest: &str,
+    used: &BTreeSet<&str>,
+    of_earlier_files: usize,
+) -> Current {
+    let (whole, before_comment) = names_in(rest);
+    let Some(name) = [Some(whole), before_comment]
+        .into_iter()
+        .flatten()
+        .find(|name| used.contains(name))
+    else {
+        return Current::Unused;
+    };
     let place = match scan.place_of.get(name) {
-        Some(place) if *place < of_earlier_files => return None,
+        Some(place) if *place < of_earlier_files => return Current::Repeated,
         Some(place) => *place,
         None => {
             scan.place_of.insert(name.to_owned(), scan.materials.len());
@@ -148,12 +192,12 @@ fn begin(scan: &mut MtlScan, name: &str, of_earlier_files: usize) -> Option<usiz
     };
     scan.materials[place].diffuse = None;
     scan.materials[place].unused.clear();
-    Some(place)
+    Current::Used(place)
 }
 
-/// `Kd r g b`, or `Kd r` for a grey.
+/// `Kd r g b`, perhaps with an alpha after it, or `Kd r` for a grey.
 fn diffuse(rest: &str) -> Option<[f64; 3]> {
-    let values: Option<Vec<f64>> = words(rest).map(number).collect();
+    let values: Option<Vec<f64>> = words(rest).take(3).map(number).collect();
     match values?[..] {
         [grey] => Some([grey; 3]),
         [r, g, b] => Some([r, g, b]),
@@ -161,22 +205,22 @@ fn diffuse(rest: &str) -> Option<[f64; 3]> {
     }
 }
 
-/// What a statement would change, if anything: `d 1` and `Ks 0 0 0` would not.
+/// What a statement would change, if anything: `d 1` and `Ks 0 0 0` would not. `keyword` is in lower case.
 fn look_of(keyword: &str, rest: &str) -> Option<Look> {
     let values: Vec<f64> = words(rest).filter_map(number).collect();
     let is_any = |neutral: f64| values.iter().any(|value| *value != neutral);
     match keyword {
         "d" if is_any(1.0) => Some(Look::Transparency),
-        "Tr" if is_any(0.0) => Some(Look::Transparency),
-        "Tf" if is_any(1.0) || values.is_empty() => Some(Look::Transparency),
+        "tr" if is_any(0.0) => Some(Look::Transparency),
+        "tf" if is_any(1.0) || values.is_empty() => Some(Look::Transparency),
         // Illumination models of the MTL format: 0 … 2 reflect no surroundings; 4, 6, 7 and 9 let light through.
         "illum" => match values.first().map(|model| *model as i64) {
             Some(4 | 6 | 7 | 9) => Some(Look::Transparency),
             Some(0..=2) => None,
             _ => Some(Look::Gloss),
         },
-        "Ks" | "Pm" | "Ps" | "Pc" if is_any(0.0) => Some(Look::Gloss),
-        "Ke" if is_any(0.0) => Some(Look::Emission),
+        "ks" | "pm" | "ps" | "pc" if is_any(0.0) => Some(Look::Gloss),
+        "ke" if is_any(0.0) => Some(Look::Emission),
         "bump" | "disp" | "decal" | "refl" | "norm" => Some(Look::Texture),
         _ if keyword.starts_with("map_") => Some(Look::Texture),
         _ => None,
@@ -189,7 +233,8 @@ pub(super) fn look_warnings<'a>(used: impl Iterator<Item = &'a FileMaterial>) ->
     for material in used {
         for (look, statements) in &material.unused {
             let materials = lost.entry(*look).or_default();
-            materials.push(format!("`{}` ({statements})", material.name));
+            let statements = statements.join(", ");
+            materials.push(format!("`{}` ({statements})", shorten(&material.name)));
         }
     }
     let warnings = lost.iter().map(|(look, materials)| {
@@ -236,8 +281,14 @@ pub(super) fn material(
         warnings.push(Warning::new(
             CLAMPED,
             format!(
-                "Material `{name}` has Kd {} {} {}, outside 0 … 1; {} {} {} is used.",
-                diffuse[0], diffuse[1], diffuse[2], albedo[0], albedo[1], albedo[2]
+                "Material `{}` has Kd {} {} {}, outside 0 … 1; {} {} {} is used.",
+                shorten(name),
+                diffuse[0],
+                diffuse[1],
+                diffuse[2],
+                albedo[0],
+                albedo[1],
+                albedo[2]
             ),
         ));
     }

@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3};
 use super::mtl::FileMaterial;
 use super::repair::{self, RawTriangle};
 use super::scan::Scan;
+use super::text::{names_in, shorten};
 use super::{Material, Mesh, MeshError, Triangle, hierarchy, mtl, scan};
 use crate::config::Limits;
 use crate::stats::Warning;
@@ -48,8 +49,8 @@ pub fn material_libraries(obj: &[u8]) -> Vec<String> {
 /// refused before the rest of the file is read.
 pub fn read(obj: &[u8], mtls: &[&[u8]], limits: &Limits) -> Result<Mesh, MeshError> {
     let mut scan = scan::scan(obj, limits.max_triangles.min(MAX_TRIANGLES))?;
-    let mtl_scan = mtl::scan(mtls);
-    let text = scan.rewritten(|name| mtl_scan.place_of(name))?;
+    let mtl_scan = mtl::scan(mtls, &names_to_find(&scan.used_materials));
+    let text = scan.rewritten(|name| place_of(&mtl_scan, name))?;
     let mut warnings = std::mem::take(&mut scan.warnings);
     material_warnings(
         &scan,
@@ -83,6 +84,23 @@ pub fn read(obj: &[u8], mtls: &[&[u8]], limits: &Limits) -> Result<Mesh, MeshErr
         materials,
         warnings,
     })
+}
+
+/// The names of the materials that an OBJ uses, also without what may be a comment after them.
+fn names_to_find(used: &[String]) -> BTreeSet<&str> {
+    used.iter()
+        .flat_map(|name| {
+            let (whole, before_comment) = names_in(name);
+            [Some(whole), before_comment].into_iter().flatten()
+        })
+        .collect()
+}
+
+/// The place of a material that an OBJ uses under `name`.
+fn place_of(mtl: &mtl::MtlScan, name: &str) -> Option<usize> {
+    let (whole, before_comment) = names_in(name);
+    mtl.place_of(whole)
+        .or_else(|| mtl.place_of(before_comment?))
 }
 
 /// Passes the checked text to the OBJ library, with `material_count` materials named by their numbers.
@@ -140,26 +158,26 @@ fn material_warnings(scan: &Scan, mtl: Option<&mtl::MtlScan>, warnings: &mut Vec
             warnings.push(Warning::new(
                 "mesh_missing_material",
                 format!(
-                    "The OBJ names the material library `{library}`, but no MTL was sent; its faces get a reflectance \
-                     of {}.",
+                    "The OBJ names the material library `{}`, but there is no MTL; its faces get a reflectance of {}.",
+                    shorten(library),
                     mtl::DEFAULT_ALBEDO
                 ),
             ));
         } else if !used.is_empty() {
-            warnings.push(missing(used.into_iter(), "but no MTL was sent"));
+            warnings.push(missing(used.into_iter(), "but there is no MTL"));
         }
         return;
     };
     warnings.extend(mtl.warnings.iter().cloned());
     let (known, absent): (Vec<&String>, Vec<&String>) = used
         .into_iter()
-        .partition(|name| mtl.place_of(name).is_some());
+        .partition(|name| place_of(mtl, name).is_some());
     if known.is_empty() {
         warnings.push(Warning::new(
             "mesh_mtl_ignored",
             format!(
                 "The MTL has no effect: none of its {} materials is named by a `usemtl` line of the OBJ.",
-                mtl.materials.len()
+                mtl.count
             ),
         ));
     }
@@ -169,7 +187,7 @@ fn material_warnings(scan: &Scan, mtl: Option<&mtl::MtlScan>, warnings: &mut Vec
 }
 
 fn missing<'a>(names: impl Iterator<Item = &'a String>, why: &str) -> Warning {
-    let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+    let names: Vec<String> = names.map(|name| format!("`{}`", shorten(name))).collect();
     let shown = names[..names.len().min(5)].join(", ");
     Warning::new(
         "mesh_missing_material",

@@ -5,17 +5,24 @@ use std::collections::HashMap;
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
+use super::repair::FLAT;
+
 /// How far the triangles' area may be from the polygon's, relative to it, before the polygon counts as one that crosses itself.
 const AREA_TOLERANCE: f64 = 1e-6;
 
-/// Most corners of a polygon whose ears are cut: the time grows with their square in the worst case, and is 3 s here.
-pub(super) const MAX_CORNERS: usize = 100_000;
+/// Most corners of a polygon whose ears are cut. The time grows with their square in the worst case (a spiral of two arms: 4 ns times
+/// the square of its corners).
+pub(super) const MAX_CORNERS: usize = 10_000;
+
+/// Most of the sum of such squares in a mesh: a few seconds.
+const MAX_SQUARES: usize = 1_000_000_000;
 
 /// Cuts polygons into triangles; keeps its memory between polygons.
 pub(super) struct Cutter {
     earcut: Earcut<f64>,
     flat: Vec<[f64; 2]>,
     ears: Vec<usize>,
+    squares: usize,
 }
 
 /// How a polygon was cut.
@@ -25,7 +32,8 @@ pub(super) enum Cut {
     Whole,
     /// The polygon crosses itself or is far from flat: no set of triangles covers exactly it.
     Crossed,
-    /// The polygon has more than [`MAX_CORNERS`] corners, and a fan does not cover it: it was not cut.
+    /// A fan does not cover the polygon, and it has more than [`MAX_CORNERS`] corners, or the mesh has too many of its kind: it was not
+    /// cut.
     TooLarge,
 }
 
@@ -35,26 +43,32 @@ impl Cutter {
             earcut: Earcut::new(),
             flat: Vec::new(),
             ears: Vec::new(),
+            squares: 0,
         }
     }
 
     /// Cuts a polygon of three or more corners; `triangles` receives indices of corners, in the polygon's own direction.
     ///
-    /// If the fan around the first corner covers the polygon, it is used; else the polygon is projected onto its plane, and its ears
-    /// are cut off. Every corner is in a triangle, also one in the middle of a straight edge, because a neighbour may end there.
+    /// If a fan around a corner covers the polygon, it is used; else the polygon is projected onto its plane, and its ears are cut off.
+    /// Every corner is in a triangle with an area, also one in the middle of a straight edge, because a neighbour may end there.
     pub(super) fn cut(&mut self, corners: &[DVec3], triangles: &mut Vec<[usize; 3]>) -> Cut {
         triangles.clear();
-        let fan = || (1..corners.len() - 1).map(|i| [0, i, i + 1]);
-        if fan_faces_one_way(corners) {
-            triangles.extend(fan());
+        let fan = |apex: usize| {
+            let turned = move |i: usize| (apex + i) % corners.len();
+            (1..corners.len() - 1).map(move |i| [apex, turned(i), turned(i + 1)])
+        };
+        // Around the first corner, or the second if the first lies on a straight edge with its neighbours.
+        if let Some(apex) = (0..corners.len().min(3)).find(|apex| fan_covers(corners, *apex)) {
+            triangles.extend(fan(apex));
             return Cut::Whole;
         }
-        if corners.len() > MAX_CORNERS {
+        self.squares += corners.len().saturating_mul(corners.len());
+        if corners.len() > MAX_CORNERS || self.squares > MAX_SQUARES {
             return Cut::TooLarge;
         }
         let normal = newell_normal(corners);
         let Some(axis) = normal.try_normalize() else {
-            triangles.extend(fan());
+            triangles.extend(fan(0));
             return Cut::Crossed;
         };
         let (right, up) = axis.any_orthonormal_pair();
@@ -88,7 +102,7 @@ impl Cutter {
             });
         }
         if triangles.is_empty() {
-            triangles.extend(fan());
+            triangles.extend(fan(0));
             return Cut::Crossed;
         }
         insert_left_out_corners(corners.len(), triangles);
@@ -101,16 +115,29 @@ impl Cutter {
     }
 }
 
-/// Whether all triangles of the fan around the first corner face the same way; they then cover the polygon.
-fn fan_faces_one_way(corners: &[DVec3]) -> bool {
+/// Whether all triangles of the fan around a corner have an area and face the same way; they then cover the polygon. A triangle whose
+/// corners coincide is no obstacle, because leaving it out loses no corner.
+fn fan_covers(corners: &[DVec3], apex: usize) -> bool {
+    let count = corners.len();
+    let at = |i: usize| corners[(apex + i) % count];
     let mut first: Option<DVec3> = None;
-    for pair in corners[1..].windows(2) {
-        let turn = (pair[0] - corners[0]).cross(pair[1] - corners[0]);
-        match first {
-            None if turn != DVec3::ZERO => first = Some(turn),
-            Some(first) if first.dot(turn) < 0.0 => return false,
-            _ => {}
+    for i in 1..count - 1 {
+        let (u, v) = (at(i) - at(0), at(i + 1) - at(0));
+        let turn = u.cross(v);
+        let coincide = u == DVec3::ZERO || v == DVec3::ZERO || u == v;
+        if coincide || count == 3 {
+            continue;
         }
+        // As in `repair`: a height of at most this fraction of the longest edge counts as none.
+        let longest = u
+            .length_squared()
+            .max(v.length_squared())
+            .max((v - u).length_squared());
+        let is_flat = turn.length() <= FLAT * longest;
+        if is_flat || first.is_some_and(|first| first.dot(turn) < 0.0) {
+            return false;
+        }
+        first.get_or_insert(turn);
     }
     true
 }

@@ -10,7 +10,7 @@ use crate::stats::Warning;
 
 /// A triangle whose height is at most this fraction of its longest edge counts as degenerate (corners on a line): rounding in the
 /// cross product alone reaches 10⁻¹⁶.
-const FLAT: f64 = 1e-12;
+pub(super) const FLAT: f64 = 1e-12;
 
 /// Codes of the warnings about triangles that were left out.
 pub(crate) const LEFT_OUT: [&str; 2] = [DEGENERATE, DUPLICATE];

@@ -12,7 +12,9 @@ use glam::DVec3;
 
 use super::MeshError;
 use super::polygon::{Cut, Cutter, MAX_CORNERS};
-use super::text::{Lines, Skipped, corner_syntax, keyword_of, number, shorten, syntax, words};
+use super::text::{
+    Lines, Skipped, Statement, corner_syntax, keyword_of, number, shorten, syntax, words,
+};
 use crate::stats::Warning;
 
 /// Largest coordinate magnitude, m. Beyond it, f32 steps are wider than 50 m even relative to the mesh's own middle.
@@ -74,7 +76,7 @@ impl Scan {
         );
         // Writing to a string cannot fail.
         for p in &self.positions {
-            let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
+            let _ = writeln!(text, "v {:e} {:e} {:e}", p.x, p.y, p.z);
         }
         text.push_str(&self.normal_text);
         let numbers: Vec<Option<usize>> = self
@@ -142,27 +144,10 @@ pub(super) fn scan(bytes: &[u8], max_triangles: usize) -> Result<Scan, MeshError
         return Err(MeshError::Empty);
     }
     let mut scanner = Scanner::new(max_triangles);
-    // A backslash at the end of a line joins it with the next one.
-    let mut joined = String::new();
-    let mut joined_from = 0;
-    for (line, text) in lines.numbered() {
-        match text.trim_ascii_end().strip_suffix('\\') {
-            Some(head) if !joined.is_empty() || may_go_on(head) => {
-                if joined.is_empty() {
-                    joined_from = line;
-                }
-                joined.push_str(head);
-                joined.push(' ');
-            }
-            _ if joined.is_empty() => scanner.line(line, &text)?,
-            _ => {
-                joined.push_str(&text);
-                scanner.line(joined_from, &std::mem::take(&mut joined))?;
-            }
-        }
+    for Statement { line, text } in lines.statements(may_go_on) {
+        scanner.line(line, &text)?;
     }
-    scanner.line(joined_from, &joined)?;
-    scanner.finish()
+    scanner.finish(&lines)
 }
 
 /// The text after each `mtllib` of an OBJ: names of material libraries, usually one.
@@ -175,8 +160,7 @@ pub(super) fn libraries(bytes: &[u8]) -> Vec<String> {
     named.collect()
 }
 
-/// Whether a line may be joined with the next one: not comments and names, in which a backslash may be half of a character of another
-/// encoding.
+/// Whether a line may be joined with the next one: not comments and names.
 fn may_go_on(line: &str) -> bool {
     let (keyword, _) = keyword_of(line);
     !keyword.starts_with('#') && !matches!(keyword, "o" | "g" | "usemtl")
@@ -195,8 +179,8 @@ struct Reference {
 struct Scanner {
     max_triangles: usize,
     positions: Vec<DVec3>,
-    /// Positions that cannot be used, by index counted from 1. They are refused if a face uses them.
-    bad_positions: BTreeMap<usize, MeshError>,
+    /// Indices, counted from 1, and lines of positions that cannot be read. They are refused if a face uses them.
+    bad_positions: Vec<(u32, u32)>,
     normals: usize,
     normal_text: String,
     faces: Vec<Face>,
@@ -212,6 +196,8 @@ struct Scanner {
     small_faces: Skipped,
     extra_values: Skipped,
     vertex_colours: Skipped,
+    bad_weights: Skipped,
+    trailing: Skipped,
     ignored: Skipped,
 }
 
@@ -220,7 +206,7 @@ impl Scanner {
         Self {
             max_triangles,
             positions: Vec::new(),
-            bad_positions: BTreeMap::new(),
+            bad_positions: Vec::new(),
             normals: 0,
             normal_text: "vn 0 0 0\n".to_owned(),
             faces: Vec::new(),
@@ -236,6 +222,8 @@ impl Scanner {
             small_faces: Skipped::default(),
             extra_values: Skipped::default(),
             vertex_colours: Skipped::default(),
+            bad_weights: Skipped::default(),
+            trailing: Skipped::default(),
             ignored: Skipped::default(),
         }
     }
@@ -271,65 +259,30 @@ impl Scanner {
     }
 
     fn vertex(&mut self, line: usize, rest: &str) {
-        let position = self.position(line, rest).unwrap_or_else(|error| {
-            self.bad_positions.insert(self.positions.len() + 1, error);
-            DVec3::ZERO
-        });
-        self.positions.push(position);
-    }
-
-    /// Three coordinates, alone, with a weight that divides them, or with further values, which are not used.
-    fn position(&mut self, line: usize, rest: &str) -> Result<DVec3, MeshError> {
-        let mut count = 0;
-        let mut first = [""; 4];
-        for word in words(rest) {
-            if let Some(place) = first.get_mut(count) {
-                *place = word;
+        let position = match position(line, rest) {
+            Ok(Vertex {
+                position,
+                values,
+                weight,
+            }) => {
+                match values {
+                    3 | 4 => {}
+                    6 => self.vertex_colours.add(|| format!("line {line}")),
+                    _ => self.extra_values.add(|| format!("line {line}")),
+                }
+                if weight == Weight::Unusable {
+                    self.bad_weights.add(|| format!("line {line}"));
+                }
+                position
             }
-            count += 1;
-        }
-        match count {
-            0..3 => {
-                let message = format!(
-                    "a vertex has {count} values; expected `v x y z`, `v x y z w` or `v x y z r g b`"
-                );
-                return Err(syntax(line, message));
+            Err(_) => {
+                let index = self.positions.len() + 1;
+                let fits = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+                self.bad_positions.push((fits(index), fits(line)));
+                DVec3::ZERO
             }
-            3 | 4 => {}
-            6 => self.vertex_colours.add(|| format!("line {line}")),
-            _ => self.extra_values.add(|| format!("line {line}")),
-        }
-        let weight = if count == 4 {
-            coordinate(line, first[3])?
-        } else {
-            1.0
         };
-        if weight == 0.0 || !weight.is_finite() {
-            let message = format!(
-                "the weight `{}` cannot divide a position; expected a finite number other than 0",
-                shorten(first[3])
-            );
-            return Err(syntax(line, message));
-        }
-        let mut position = DVec3::ZERO;
-        for (axis, word) in first[..3].iter().enumerate() {
-            let value = coordinate(line, word)? / weight;
-            if !value.is_finite() {
-                return Err(MeshError::NonFinite {
-                    line,
-                    text: shorten(word),
-                });
-            }
-            if value.abs() > MAX_COORDINATE_M {
-                return Err(MeshError::TooLarge {
-                    line,
-                    text: shorten(word),
-                    limit: MAX_COORDINATE_M,
-                });
-            }
-            position[axis] = value;
-        }
-        Ok(position)
+        self.positions.push(position);
     }
 
     fn normal(&mut self, line: usize, rest: &str) {
@@ -342,7 +295,8 @@ impl Scanner {
         // Writing to a string cannot fail.
         if values.iter().all(|v| v.is_finite()) && largest > 0.0 {
             let [x, y, z] = values.map(|v| v / largest);
-            let _ = writeln!(self.normal_text, "vn {x} {y} {z}");
+            // In scientific notation: a tiny number would have hundreds of zeros.
+            let _ = writeln!(self.normal_text, "vn {x:e} {y:e} {z:e}");
         } else {
             self.bad_normals.add(|| format!("line {line}"));
             self.normal_text.push_str("vn 0 0 0\n");
@@ -353,8 +307,19 @@ impl Scanner {
         self.face_count += 1;
         let start = self.corners.len();
         for word in words(rest) {
-            let corner = self.corner(line, word)?;
-            self.corners.push(corner);
+            match self.corner(line, word) {
+                Ok(corner) => self.corners.push(corner),
+                // What does not begin like a corner is no part of the geometry: `f 1 2 3 // front`, `f 1 2 3;`.
+                Err(_)
+                    if self.corners.len() - start >= 3
+                        && !word.starts_with(|c: char| c.is_ascii_digit() || c == '-') =>
+                {
+                    self.trailing
+                        .add(|| format!("`{}` on line {line}", shorten(word)));
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
         }
         let count = self.corners.len() - start;
         if count < 3 {
@@ -380,7 +345,7 @@ impl Scanner {
 
     /// One corner `position[/texture][/normal]`. The geometry needs the position only; a normal that is not there is the face's.
     fn corner(&mut self, line: usize, word: &str) -> Result<Corner, MeshError> {
-        let mut parts = word.split('/');
+        let mut parts = word.trim_end_matches([';', ',']).split('/');
         let whole = |part: &str| part.parse::<i64>().ok();
         let position = parts
             .next()
@@ -433,7 +398,7 @@ impl Scanner {
         Ok(absolute.min(MAX_INDEX) as u32)
     }
 
-    fn finish(mut self) -> Result<Scan, MeshError> {
+    fn finish(mut self, lines: &Lines<'_>) -> Result<Scan, MeshError> {
         let highest = self.highest_position;
         if highest.index > self.positions.len() {
             return Err(MeshError::FaceIndex {
@@ -449,9 +414,9 @@ impl Scanner {
                 vertices: self.positions.len(),
             });
         }
-        self.refuse_bad_positions()?;
+        self.refuse_bad_positions(lines)?;
         self.drop_missing_normals();
-        let warnings = self.warnings();
+        let warnings = self.warnings(lines);
         let mut used_materials = vec![String::new(); self.materials.len()];
         for (name, index) in std::mem::take(&mut self.materials) {
             used_materials[index] = name;
@@ -468,16 +433,20 @@ impl Scanner {
     }
 
     /// Refuses the file if a face uses a vertex that cannot be read; one that no face uses is harmless.
-    fn refuse_bad_positions(&mut self) -> Result<(), MeshError> {
+    fn refuse_bad_positions(&self, lines: &Lines<'_>) -> Result<(), MeshError> {
         if self.bad_positions.is_empty() {
             return Ok(());
         }
-        let used = self.corners.iter().map(|corner| corner.position as usize);
-        match used
-            .filter(|index| self.bad_positions.contains_key(index))
-            .min()
-        {
-            Some(first) => Err(self.bad_positions[&first].clone()),
+        let mut is_used = vec![false; self.positions.len() + 1];
+        for corner in &self.corners {
+            is_used[corner.position as usize] = true;
+        }
+        let first_used = self
+            .bad_positions
+            .iter()
+            .find(|(index, _)| is_used[*index as usize]);
+        match first_used.and_then(|(_, line)| error_on(lines, *line)) {
+            Some(error) => Err(error),
             None => Ok(()),
         }
     }
@@ -496,10 +465,10 @@ impl Scanner {
         }
     }
 
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self, lines: &Lines<'_>) -> Vec<Warning> {
         let mut bad_vertices = Skipped::default();
-        for error in self.bad_positions.values() {
-            bad_vertices.add(|| error.to_string());
+        for (_, line) in &self.bad_positions {
+            bad_vertices.add(|| error_on(lines, *line).map_or_else(String::new, |e| e.to_string()));
         }
         [
             bad_vertices.warning(
@@ -526,6 +495,14 @@ impl Scanner {
                 "mesh_extra_values_ignored",
                 "vertices have more values than `x y z`, which are not used.",
             ),
+            self.bad_weights.warning(
+                "mesh_bad_weights",
+                "vertices have a fourth value that cannot be a weight; they are used as without it.",
+            ),
+            self.trailing.warning(
+                "mesh_trailing_words",
+                "faces end in words that are no corners; these are not used.",
+            ),
             self.ignored.warning(
                 "mesh_ignored_lines",
                 "lines are not used; only v, vn, f, usemtl and mtllib are.",
@@ -535,6 +512,81 @@ impl Scanner {
         .flatten()
         .collect()
     }
+}
+
+/// A vertex as read.
+struct Vertex {
+    position: DVec3,
+    /// Number of values on its line.
+    values: usize,
+    weight: Weight,
+}
+
+/// The fourth of four values.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Weight {
+    /// There is none, or it has divided the position.
+    Used,
+    /// It is no number, not finite, or 0.
+    Unusable,
+}
+
+/// Three coordinates, alone, with a weight that divides them, or with further values, which are not used.
+fn position(line: usize, rest: &str) -> Result<Vertex, MeshError> {
+    let mut count = 0;
+    let mut first = [""; 4];
+    for word in words(rest) {
+        if let Some(place) = first.get_mut(count) {
+            *place = word;
+        }
+        count += 1;
+    }
+    if count < 3 {
+        let message = format!(
+            "a vertex has {count} values; expected `v x y z`, `v x y z w` or `v x y z r g b`"
+        );
+        return Err(syntax(line, message));
+    }
+    let weight = match (count, number(first[3])) {
+        (4, Some(weight)) if weight != 0.0 && weight.is_finite() => Some(weight),
+        (4, _) => None,
+        _ => Some(1.0),
+    };
+    let mut position = DVec3::ZERO;
+    for (axis, word) in first[..3].iter().enumerate() {
+        let value = coordinate(line, word)? / weight.unwrap_or(1.0);
+        if !value.is_finite() {
+            return Err(MeshError::NonFinite {
+                line,
+                text: shorten(word),
+            });
+        }
+        if value.abs() > MAX_COORDINATE_M {
+            return Err(MeshError::TooLarge {
+                line,
+                text: shorten(word),
+                limit: MAX_COORDINATE_M,
+            });
+        }
+        position[axis] = value;
+    }
+    Ok(Vertex {
+        position,
+        values: count,
+        weight: if weight.is_some() {
+            Weight::Used
+        } else {
+            Weight::Unusable
+        },
+    })
+}
+
+/// The error of the vertex on a line, found by reading the line again: errors are not kept, because there may be millions.
+fn error_on(lines: &Lines<'_>, line: u32) -> Option<MeshError> {
+    let mut statements = lines.statements(may_go_on);
+    let statement = statements.find(|statement| statement.line == line as usize)?;
+    let (_, rest) = keyword_of(&statement.text);
+    position(statement.line, rest).err()
 }
 
 /// The absolute index of the negative `index`, counted back from the `before` read so far; `None` before the first.

@@ -16,6 +16,14 @@ pub(super) struct Lines<'a> {
     text: Cow<'a, [u8]>,
 }
 
+/// A statement: a line, or several that a backslash at the end joins.
+pub(super) struct Statement<'a> {
+    /// Its first line, counted from 1.
+    pub(super) line: usize,
+    /// Its text.
+    pub(super) text: Cow<'a, str>,
+}
+
 impl<'a> Lines<'a> {
     /// The lines of a file.
     pub(super) fn of(bytes: &'a [u8]) -> Self {
@@ -44,13 +52,35 @@ impl<'a> Lines<'a> {
                 .position(|byte| matches!(byte, b'\n' | b'\r'))
                 .unwrap_or(rest.len());
             let (line, after) = rest.split_at(end);
-            rest = after
-                .strip_prefix(b"\r\n")
+            // CR CR LF comes of programs that turn the LF of CR LF into CR LF.
+            let ends: [&[u8]; 2] = [b"\r\r\n", b"\r\n"];
+            rest = ends
+                .iter()
+                .find_map(|end| after.strip_prefix(*end))
                 .or_else(|| after.get(1..))
                 .unwrap_or_default();
             Some(decoded(line))
         });
         lines.enumerate().map(|(index, line)| (index + 1, line))
+    }
+
+    /// Each statement. `may_go_on` says whether a line may be joined with the next one: comments and names may not, because in other
+    /// encodings a backslash may be half of a character.
+    pub(super) fn statements(
+        &self,
+        may_go_on: impl Fn(&str) -> bool,
+    ) -> impl Iterator<Item = Statement<'_>> {
+        let mut lines = self.numbered();
+        std::iter::from_fn(move || {
+            let (line, mut text) = lines.next()?;
+            while let Some(head) = trimmed(before_comment(&text)).strip_suffix('\\')
+                && may_go_on(head)
+            {
+                let next = lines.next().map(|(_, next)| next).unwrap_or_default();
+                text = format!("{head} {next}").into();
+            }
+            Some(Statement { line, text })
+        })
     }
 
     /// Whether there is nothing but white space.
@@ -77,22 +107,50 @@ fn decoded(line: &[u8]) -> Cow<'_, str> {
     }
 }
 
-/// A line's keyword and what follows it, both without white space around.
-///
-/// Only ASCII characters are white space: in names, the bytes of other encodings must not be trimmed.
-pub(super) fn keyword_of(line: &str) -> (&str, &str) {
-    let line = line.trim_ascii();
-    let end = line
-        .find(|c: char| c.is_ascii_whitespace())
-        .unwrap_or(line.len());
-    let (keyword, rest) = line.split_at(end);
-    (keyword, rest.trim_ascii())
+/// Whether a character separates words. Only ASCII characters do: in names, the bytes of other encodings must not be trimmed. A zero byte
+/// does, because some programs fill up lines with them.
+fn is_space(c: char) -> bool {
+    c.is_ascii_whitespace() || matches!(c, '\0' | '\x0b')
 }
 
-/// Words of a line up to a trailing comment.
+/// A line without white space around it.
+pub(super) fn trimmed(line: &str) -> &str {
+    line.trim_matches(is_space)
+}
+
+/// A line's keyword and what follows it, both without white space around.
+pub(super) fn keyword_of(line: &str) -> (&str, &str) {
+    let line = trimmed(line);
+    let end = line.find(is_space).unwrap_or(line.len());
+    let (keyword, rest) = line.split_at(end);
+    (keyword, trimmed(rest))
+}
+
+/// A line of numbers up to a comment, which may begin anywhere (`1.5#corner`), but not within C's `1.#IND`.
+fn before_comment(rest: &str) -> &str {
+    let is_comment = |&(at, _): &(usize, &str)| !rest[..at].ends_with("1.");
+    let comment = rest.match_indices('#').find(is_comment);
+    &rest[..comment.map_or(rest.len(), |(at, _)| at)]
+}
+
+/// Words of a line of numbers up to a comment.
 pub(super) fn words(rest: &str) -> impl Iterator<Item = &str> {
-    rest.split_ascii_whitespace()
-        .take_while(|word| !word.starts_with('#'))
+    before_comment(rest)
+        .split(is_space)
+        .filter(|word| !word.is_empty())
+}
+
+/// A name, and the name without what may be a comment after it, if there is one: `red # of the hull`.
+pub(super) fn names_in(rest: &str) -> (&str, Option<&str>) {
+    let comment = rest
+        .match_indices('#')
+        .find(|(at, _)| rest[..*at].ends_with(is_space));
+    (
+        rest,
+        comment
+            .map(|(at, _)| trimmed(&rest[..at]))
+            .filter(|name| !name.is_empty()),
+    )
 }
 
 /// A decimal number; NaN for the words that C libraries write for NaN and infinity (`-nan(ind)`, `1.#QNAN`, `-1.#IND00`, `1.#INF`).

@@ -112,9 +112,11 @@ fn way_to(target: &Path) -> io::Result<Way> {
         return Ok(Way::InPlace);
     }
     match create_beside(target) {
-        Ok(temporary) if takes_after(temporary.as_file(), &about)? => Ok(Way::Rename(temporary)),
+        Ok(temporary) if has_same_owner_and_mode(temporary.as_file(), &about) => {
+            Ok(Way::Rename(temporary))
+        }
         Ok(_) => Ok(Way::InPlace),
-        Err(error) if is_closed_folder(&error) => Ok(Way::InPlace),
+        Err(error) if is_folder_without_permission(&error) => Ok(Way::InPlace),
         Err(error) => Err(error),
     }
 }
@@ -130,25 +132,25 @@ fn is_shared(_: &Metadata) -> bool {
     false
 }
 
-/// Gives `file` the mode of the one that it replaces. Returns whether it also has the same owner and group.
+/// Gives `file` the mode of the one that it replaces, if it has the same owner and group. Returns whether all three are the same then;
+/// some file systems do not let the mode be set.
 #[cfg(unix)]
-fn takes_after(file: &File, replaced: &Metadata) -> io::Result<bool> {
+fn has_same_owner_and_mode(file: &File, replaced: &Metadata) -> bool {
     use std::os::unix::fs::MetadataExt;
-    let about = file.metadata()?;
-    if (about.uid(), about.gid()) != (replaced.uid(), replaced.gid()) {
-        return Ok(false);
-    }
-    file.set_permissions(replaced.permissions())?;
-    Ok(true)
+    let owner = |about: &Metadata| (about.uid(), about.gid());
+    let has_owner = file
+        .metadata()
+        .is_ok_and(|about| owner(&about) == owner(replaced));
+    has_owner && file.set_permissions(replaced.permissions()).is_ok()
 }
 
 #[cfg(not(unix))]
-fn takes_after(_: &File, _: &Metadata) -> io::Result<bool> {
-    Ok(true)
+fn has_same_owner_and_mode(_: &File, _: &Metadata) -> bool {
+    true
 }
 
 /// Whether an error says that no file can be created in a folder, although files in it may be writable.
-fn is_closed_folder(error: &io::Error) -> bool {
+fn is_folder_without_permission(error: &io::Error) -> bool {
     matches!(
         error.kind(),
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem

@@ -62,6 +62,46 @@ pub fn is_stdout(path: &Path) -> bool {
         || target_of(path).is_ok_and(|target| names.iter().any(|name| target == Path::new(name)))
 }
 
+/// Whether `path` leads to a file that this process has open, as `/dev/fd/3` does.
+pub fn is_open_file(path: &Path) -> bool {
+    target_of(path).is_ok_and(|target| is_descriptor(&target))
+}
+
+/// Whether what is written to one path replaces what is written to the other: both lead to the same file, which need not exist.
+/// Devices and pipes keep nothing, so they are not meant.
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    match (fs::metadata(one), fs::metadata(other)) {
+        (Ok(about_one), Ok(about_other)) => {
+            about_one.is_file()
+                && about_other.is_file()
+                && (is_same_inode(&about_one, &about_other) || has_same_place(one, other))
+        }
+        (Err(_), Err(_)) => has_same_place(one, other),
+        _ => false,
+    }
+}
+
+#[cfg(unix)]
+fn is_same_inode(one: &fs::Metadata, other: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (one.dev(), one.ino()) == (other.dev(), other.ino())
+}
+
+#[cfg(not(unix))]
+fn is_same_inode(_: &fs::Metadata, _: &fs::Metadata) -> bool {
+    false
+}
+
+/// Whether two paths lead to the same name in the same folder.
+fn has_same_place(one: &Path, other: &Path) -> bool {
+    let place_of = |path: &Path| -> Option<PathBuf> {
+        let target = target_of(path).ok()?;
+        let folder = fs::canonicalize(folder_of(&target)).ok()?;
+        Some(folder.join(target.file_name()?))
+    };
+    place_of(one).is_some_and(|place| Some(place) == place_of(other))
+}
+
 /// The folder that a file is in.
 pub(super) fn folder_of(path: &Path) -> &Path {
     match path.parent() {

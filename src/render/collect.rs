@@ -460,7 +460,7 @@ fn coarse_positions(positions: &Layer) -> Option<Warning> {
         Warning::new(
             "positions_coarse",
             format!(
-                "layer position has steps of {step_m} m, because it is single precision and reaches {farthest_m:.0} m from the world's origin; the picture itself is exact there, and so is seen_depth, which with the camera in stats gives the position"
+                "layer position has steps of {step_m} m, because it is single precision and reaches {farthest_m:.0} m from the world's origin; the picture itself is exact there; for surfaces that are not seen through water, so is seen_depth, which with the camera in stats gives the position"
             ),
         )
     })

@@ -950,7 +950,8 @@ pub enum ExrPixel {
 /// - `radiance`: at the camera, W/(m² sr), with alpha; EXR R G B A.
 /// - `depth`: distance along the viewing axis (z, not the length of the ray) to the first surface on the ray, the water's included, m;
 ///   EXR Z.
-/// - `seen_depth`: distance along the viewing axis to the surface seen, which may lie behind the water, m; EXR seen.Z.
+/// - `seen_depth`: distance along the viewing axis to the surface seen, which may lie behind the water, m; EXR seen.Z. For a surface that
+///   the water mirrors it may be smaller than `depth`, and negative.
 /// - `normal`, `position`, `albedo`, `irradiance`: of the surface seen; EXR N.X N.Y N.Z, P.X P.Y P.Z, albedo.R … and irradiance.R ….
 ///
 /// Where a pixel sees no surface, `seen_depth` is 10¹⁰ m and these four are 0; `depth` is 10¹⁰ m only if there is no water either.
@@ -963,7 +964,7 @@ pub enum LayerName {
     /// 10¹⁰ if the ray meets nothing. All other layers are those of the surface seen, which may lie behind the water.
     Depth,
     /// Distance along the viewing axis to the surface seen, m: (P − camera position) · viewing direction. It is `depth` where no water
-    /// is in between; EXR seen.Z; 10¹⁰ if no surface is seen.
+    /// is in between; for a surface mirrored in the water it may be smaller, and negative; EXR seen.Z; 10¹⁰ if no surface is seen.
     SeenDepth,
     /// World normal of the surface seen through the water; EXR N.X N.Y N.Z.
     Normal,

@@ -244,6 +244,20 @@ fn a_plan_reads_well() {
 }
 
 #[test]
+fn columns_are_aligned_and_cells_of_any_length_are_printed() {
+    let row = |cells: &[&str]| -> Vec<String> { cells.iter().map(|&cell| cell.into()).collect() };
+    let rows = [row(&["a", "bb", "c"]), row(&["aaa", "b"]), row(&[])];
+    assert_eq!(summary::columns(&rows, " "), " a    bb  c\n aaa  b\n\n");
+    // The formatter of the standard library panics at widths above 65 535.
+    let long = "x".repeat(70_000);
+    let rows = [row(&[long.as_str(), long.as_str()]), row(&["a", "b"])];
+    let text = summary::columns(&rows, "");
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[0] == format!("{long}  {long}"), "both whole");
+    assert_eq!(lines[1].len(), 200 + 3);
+}
+
+#[test]
 fn errors_have_three_digits_that_count() {
     let table = [
         (0.5, "50.0 %"),

@@ -2,6 +2,24 @@
 
 use std::path::Path;
 
+use caustica::cli::notes::printable;
+
+#[test]
+fn control_characters_do_not_reach_the_terminal() {
+    let table = [
+        ("a\tb\nc ä 水\n", "a\tb\nc ä 水\n"),
+        ("\u{1b}[31mred", "\u{fffd}[31mred"),
+        (
+            "a\rb\u{7}\u{8}\u{0}\u{7f}",
+            "a\u{fffd}b\u{fffd}\u{fffd}\u{fffd}\u{fffd}",
+        ),
+        ("\u{9b}2J", "\u{fffd}2J"),
+    ];
+    for (text, expected) in table {
+        assert_eq!(printable(text), expected);
+    }
+}
+
 #[test]
 fn commands_write_to_stderr_in_one_place() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli");

@@ -103,6 +103,58 @@ fn the_program_refuses_a_bad_scene_with_its_places() {
 }
 
 #[test]
+fn a_plan_prints_notes_of_meshes_without_their_control_characters() {
+    let folder = Folder::new();
+    // The mesh names a material, and there is no MTL.
+    folder.write("a\u{1b}b.obj", TRIANGLE);
+    let scene = folder.write("scene.json", &scene_text("a\\u001bb.obj"));
+    let out = program(&["plan", scene.to_str().unwrap()]);
+    let said = String::from_utf8(out.stderr).unwrap();
+    assert_eq!(out.status.code(), Some(0), "{said}");
+    assert!(said.starts_with("note: "), "{said}");
+    assert!(said.contains("a\u{fffd}b.obj"), "{said}");
+    assert!(!said.contains('\u{1b}'), "{said}");
+}
+
+#[test]
+fn files_that_would_overwrite_each_other_are_refused_before_rendering() {
+    let folder = Folder::new();
+    folder.write("a.obj", TRIANGLE);
+    let text = scene_text("a.obj");
+    let scene = folder.write("scene.1.png", &text);
+    let scene = scene.to_str().unwrap();
+    let path = |name: &str| folder.0.join(name).to_str().unwrap().to_owned();
+    let (picture, same, frames) = (path("x.png"), path("./x.png"), path("scene.%d.png"));
+    let table: [(&[&str], &str); 4] = [
+        (
+            &["render", scene, "-o", &picture, "--stats", &same],
+            "--output and --stats both lead to",
+        ),
+        (
+            &["render", scene, "-o", scene],
+            "--output would overwrite the scene file",
+        ),
+        (
+            &["render", scene, "-o", &picture, "--stats", scene],
+            "--stats would overwrite the scene file",
+        ),
+        (
+            &["animate", scene, "--frames", "0-3", "-o", &frames],
+            "a frame would overwrite the scene file",
+        ),
+    ];
+    for (words, reason) in table {
+        let out = program(words);
+        let said = String::from_utf8(out.stderr).unwrap();
+        assert_eq!(out.status.code(), Some(2), "{words:?}: {said}");
+        assert!(said.contains(reason), "{words:?}: {said}");
+        assert_eq!(folder.names(), ["a.obj", "scene.1.png"], "{words:?}");
+        let kept = std::fs::read_to_string(scene).unwrap();
+        assert_eq!(kept, text, "{words:?}");
+    }
+}
+
+#[test]
 fn an_animation_beyond_the_range_of_time_is_refused_before_it_starts() {
     let folder = Folder::new();
     folder.write("a.obj", TRIANGLE);

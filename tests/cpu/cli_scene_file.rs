@@ -130,6 +130,31 @@ fn material_libraries_are_read_inside_the_scenes_folder() {
         let is_noted = notes.contains("material library") || notes.contains("several MTL");
         assert_eq!(is_noted, !note.is_empty(), "{library}: {notes}");
     }
+    // An absolute path that leads inside is inside, and links to the folder change nothing.
+    let inside = folder.0.join("s/m/near.mtl");
+    folder.write(
+        "s/m/mesh.obj",
+        &format!("mtllib {}\n{TRIANGLE}", inside.display()),
+    );
+    let (albedo, notes) = albedo_of(&folder, "m/mesh.obj");
+    assert!(
+        (albedo[0] - 0.1).abs() < 1e-6 && !notes.contains("material library"),
+        "{notes}"
+    );
+    #[cfg(unix)]
+    {
+        folder.write("models/boat.mtl", "newmtl red\nKd 0.9 0 0\n");
+        folder.write("models/boat.obj", &format!("mtllib boat.mtl\n{TRIANGLE}"));
+        folder.write(
+            "deep/scenes/scene.json",
+            &scene_text("../../models/boat.obj"),
+        );
+        std::os::unix::fs::symlink("deep/scenes", folder.0.join("link")).unwrap();
+        let args = scene_args(&folder.0.join("link/scene.json"), &[]);
+        let loaded = load(&args, None, &Limits::default()).unwrap();
+        let albedo = loaded.resolved.meshes[0].materials[0].albedo;
+        assert!((albedo[0] - 0.9).abs() < 1e-6, "{:?}", loaded.notes);
+    }
     // A mesh outside of the scene's folder has its own folder.
     folder.write("else/out.mtl", "newmtl red\nKd 0.7 0 0\n");
     for (library, red) in [("out.mtl", 0.7), ("../secret.mtl", 0.8)] {

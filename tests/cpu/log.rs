@@ -62,6 +62,23 @@ fn what_waits_for_a_stalled_reader_is_bounded() {
     assert_eq!(texts.recv().unwrap(), "later");
 }
 
+#[test]
+fn a_text_that_is_longer_than_the_queue_is_written() {
+    let (allow, allowed) = channel();
+    let (taken, texts) = channel();
+    let log = Log::start(Stalled { allowed, taken }).unwrap();
+    let long = "x".repeat(5 << 20);
+    log.put("short\n");
+    log.put(long.clone());
+    log.put("this finds the queue full\n");
+    drop(allow);
+    assert!(log.flush(LONG));
+    assert_eq!(texts.recv().unwrap(), "short\n");
+    assert!(texts.recv().unwrap() == long, "the whole text");
+    assert_eq!(texts.try_iter().count(), 0);
+    assert_eq!(log.dropped(), 1);
+}
+
 /// A disk that is full.
 struct Full;
 

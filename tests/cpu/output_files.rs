@@ -4,13 +4,17 @@
 
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
+use std::os::fd::AsRawFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use caustica::cli::animate::is_rendered;
 use caustica::cli::files::Destination;
-use caustica::output_files::{Pending, check, clear_leftovers, is_stdout, target_of, write};
+use caustica::output_files::{
+    Pending, check, clear_leftovers, is_same_file, is_stdout, target_of, write,
+};
 
 use super::folder::Folder;
 
@@ -199,6 +203,7 @@ fn devices_and_pipes_are_written_through() {
     let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
     assert!(made.success());
     check(&pipe).unwrap();
+    assert!(!is_rendered(&pipe, ""), "it is not read, which would wait");
     let reader = {
         let pipe = pipe.clone();
         std::thread::spawn(move || {
@@ -251,5 +256,48 @@ fn stdout_has_several_names() {
     for (path, has_format) in [("-", false), ("/dev/null", false), ("x.png", true)] {
         let format = Destination::of(Path::new(path)).format().unwrap();
         assert_eq!(format.is_some(), has_format, "{path}");
+    }
+}
+
+#[test]
+fn an_open_file_without_an_extension_has_the_format_of_the_scene() {
+    let folder = Folder::new();
+    let file = File::create(folder.0.join("picture")).unwrap();
+    let path = format!("/dev/fd/{}", file.as_raw_fd());
+    let destination = Destination::of(Path::new(&path));
+    assert_eq!(destination.format().unwrap(), None);
+    destination.check().unwrap();
+    destination.write(b"a picture").unwrap();
+    let written = fs::read(folder.0.join("picture")).unwrap();
+    assert_eq!(written, b"a picture");
+}
+
+#[test]
+fn paths_that_lead_to_the_same_file_are_known() {
+    let folder = Folder::new();
+    let path = |name: &str| folder.0.join(name);
+    folder.write("store/a", "a");
+    folder.write("store/b", "b");
+    symlink("store/a", path("to_a")).unwrap();
+    symlink("store/new", path("to_new")).unwrap();
+    symlink("store", path("also_store")).unwrap();
+    fs::hard_link(path("store/a"), path("hard_a")).unwrap();
+    for (one, other, is_same) in [
+        ("store/a", "store/a", true),
+        ("store/a", "to_a", true),
+        ("store/a", "hard_a", true),
+        ("store/a", "also_store/../store/a", true),
+        ("to_new", "store/new", true),
+        ("store/new", "also_store/new", true),
+        ("store/a", "store/b", false),
+        ("store/a", "store/new", false),
+        ("store/new", "new", false),
+        ("/dev/null", "/dev/null", false),
+    ] {
+        assert_eq!(
+            is_same_file(&path(one), &path(other)),
+            is_same,
+            "{one} {other}"
+        );
     }
 }

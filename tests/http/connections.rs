@@ -142,6 +142,62 @@ async fn a_request_in_flight_is_not_idle() {
     running.end().await;
 }
 
+/// A request for a render whose body has only begun.
+const HALF_BODY: &[u8] =
+    b"POST /v1/render HTTP/1.1\r\nhost: test\r\ncontent-type: application/json\r\n\
+    content-length: 1000\r\n\r\n{";
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_body_that_stops_arriving_is_idle() {
+    let service = Service::start().await;
+    let before = count(&service, "idle").await;
+    let idle = Duration::from_millis(200);
+    let running = run(&service, app(service.state.clone()), 8, idle).await;
+    let address = running.address;
+    blocking(move || assert_eq!(closed(connect(address, HALF_BODY)), 0)).await;
+    assert!(count(&service, "idle").await > before);
+    running.end().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_body_that_arrives_slowly_is_not_idle() {
+    let service = Service::start().await;
+    let idle = Duration::from_secs(3);
+    let running = run(&service, app(service.state.clone()), 8, idle).await;
+    let address = running.address;
+    let text = blocking(move || {
+        let request = render();
+        let (start, end) = request.split_at(request.len() - 20);
+        let mut stream = connect(address, start);
+        // All of it together takes longer than the limit.
+        for byte in end {
+            std::thread::sleep(idle / 15);
+            stream.write_all(&[*byte]).unwrap();
+        }
+        answer(&mut stream)
+    });
+    let text = text.await;
+    assert!(text.starts_with("HTTP/1.1 200"), "{text}");
+    running.end().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn half_sent_bodies_keep_nobody_out() {
+    let service = Service::start().await;
+    let before = count(&service, "evicted").await;
+    let running = run(&service, app(service.state.clone()), 3, NEVER).await;
+    let address = running.address;
+    blocking(move || {
+        let half: Vec<_> = (0..3).map(|_| connect(address, HALF_BODY)).collect();
+        let mut probe = connect(address, PING);
+        assert!(answer(&mut probe).starts_with("HTTP/1.1 200"));
+        drop(half);
+    })
+    .await;
+    assert!(count(&service, "evicted").await > before);
+    running.end().await;
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn the_connection_that_has_waited_longest_makes_room() {
     let service = Service::start().await;

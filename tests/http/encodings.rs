@@ -73,6 +73,41 @@ async fn encoded_scenes_and_meshes_are_those_that_were_encoded() {
     assert_eq!(reply.json::<Value>()["id"], plain["id"]);
 }
 
+/// As `cat a.gz b.gz` and bgzip write them.
+#[tokio::test]
+async fn all_members_of_a_gzip_body_are_read() {
+    let service = Service::start().await;
+    let scene = scenes::small().to_string();
+    let plain = service.post_json("/v1/render", &scene).await;
+    let (start, end) = scene.as_bytes().split_at(scene.len() / 2);
+    let two = [gzip(start), gzip(end)].concat();
+    let with_empty = [gzip(b""), gzip(start), gzip(b""), gzip(end), gzip(b"")].concat();
+    for body in [two, with_empty] {
+        let reply = post(&service, "/v1/render", "application/json", "gzip", body).await;
+        assert_eq!(reply.status, 200, "{}", reply.text());
+        assert_eq!(reply.header("etag"), plain.header("etag"));
+    }
+}
+
+#[tokio::test]
+async fn bytes_after_the_end_of_an_encoding_are_an_error() {
+    let service = Service::start().await;
+    let scene = scenes::small().to_string();
+    let gzip = gzip(scene.as_bytes());
+    let deflate = deflate(scene.as_bytes());
+    for (encoding, encoded) in [("gzip", gzip), ("deflate", deflate)] {
+        // Less than a header, more than a header, half a member.
+        for rest in [b"x".to_vec(), vec![b'x'; 100], encoded[..9].to_vec()] {
+            let body = [encoded.clone(), rest].concat();
+            let reply = post(&service, "/v1/render", "application/json", encoding, body).await;
+            let problem = reply.problem(ProblemKind::MalformedBody);
+            let expected = format!("the body is not valid {encoding} from start to end: ");
+            assert!(problem.detail.contains(&expected), "{}", problem.detail);
+        }
+    }
+    service.assert_whole().await;
+}
+
 #[tokio::test]
 async fn other_encodings_are_refused_with_those_that_are_decoded() {
     let service = Service::start().await;
@@ -142,13 +177,17 @@ async fn the_size_limit_is_that_of_the_decoded_body() {
     let service = Service::start_limited(limits).await;
     // 64 MiB of spaces in 64 KiB.
     let bomb = gzip(&vec![b' '; 64 << 20]);
+    // The same in members that are smaller than the limit.
+    let many = gzip(&[b' '; 4000]).repeat(1000);
     for (path, kind) in [
         ("/v1/render", "application/json"),
         ("/v1/meshes", "text/plain"),
         ("/v1/meshes", "multipart/form-data; boundary=cut"),
     ] {
-        let reply = post(&service, path, kind, "gzip", bomb.clone()).await;
-        reply.problem(ProblemKind::BodyTooLarge);
+        for bomb in [&bomb, &many] {
+            let reply = post(&service, path, kind, "gzip", bomb.clone()).await;
+            reply.problem(ProblemKind::BodyTooLarge);
+        }
     }
     let scene = scenes::small().to_string();
     assert!(scene.len() < 4096, "the scene fits");

@@ -31,6 +31,10 @@ impl CloseReason {
     }
 }
 
+/// A client counts as waiting when nothing of its request's body has arrived for this time: clients that send steadily are not closed
+/// for a new connection.
+const BODY_PAUSE: Duration = Duration::from_secs(1);
+
 /// All open connections.
 #[derive(Debug)]
 pub(super) struct Open {
@@ -63,8 +67,10 @@ impl Open {
                 place = Arc::clone(&self.places).acquire_owned() => {
                     return place.expect("the semaphore is never closed");
                 }
-                // One that was evicted gives its place up.
+                // A connection that was evicted frees its place soon.
                 () = self.waits.notified(), if !evicted => {}
+                // A client whose body stops arriving starts to wait without a notice.
+                () = tokio::time::sleep(BODY_PAUSE / 4), if !evicted => {}
             }
         }
     }
@@ -116,12 +122,28 @@ enum Phase {
     Silent(Instant),
     /// A part of a header has arrived, its first byte then.
     Header(Instant),
-    /// A request is in flight, or its answer is being written. If the client does not take any more of it: since when.
-    Busy { stalled: Option<Instant> },
-    /// The same, and the end of the answer has been handed over for writing.
+    /// A request is in flight, or its answer is being written.
+    Busy {
+        /// If the client does not take any more of the answer: since when.
+        stalled: Option<Instant>,
+        /// If the service needs more of the request's body and the client sends none: since when.
+        awaited: Option<Instant>,
+    },
+    /// The end of the answer has been handed over for writing.
     Ending { stalled: Option<Instant> },
     /// It is being closed to make room; nothing changes that.
     Evicted,
+}
+
+impl Phase {
+    /// Since when the connection waits for its client; `None` if it does not, and while it is being closed.
+    fn waiting_since(self) -> Option<Instant> {
+        match self {
+            Self::Silent(since) | Self::Header(since) => Some(since),
+            Self::Busy { awaited, .. } => awaited.filter(|since| since.elapsed() >= BODY_PAUSE),
+            Self::Ending { .. } | Self::Evicted => None,
+        }
+    }
 }
 
 /// When a connection is to be closed, and why.
@@ -143,16 +165,13 @@ impl Watch {
     }
 
     fn waiting_since(&self) -> Option<Instant> {
-        match *self.phase() {
-            Phase::Silent(since) | Phase::Header(since) => Some(since),
-            Phase::Busy { .. } | Phase::Ending { .. } | Phase::Evicted => None,
-        }
+        self.phase().waiting_since()
     }
 
     /// Closes the connection unless it is busy by now.
     fn evict(&self) -> bool {
         let mut phase = self.phase();
-        let waiting = matches!(*phase, Phase::Silent(_) | Phase::Header(_));
+        let waiting = phase.waiting_since().is_some();
         if waiting {
             *phase = Phase::Evicted;
             self.evicted.notify_one();
@@ -160,12 +179,20 @@ impl Watch {
         waiting
     }
 
+    /// Whether the connection is being closed to make room.
+    pub(super) fn is_evicted(&self) -> bool {
+        matches!(*self.phase(), Phase::Evicted)
+    }
+
     /// A request begins; false if the connection is being closed.
     pub(super) fn begin(&self) -> bool {
         let mut phase = self.phase();
         let stays = !matches!(*phase, Phase::Evicted);
         if stays {
-            *phase = Phase::Busy { stalled: None };
+            *phase = Phase::Busy {
+                stalled: None,
+                awaited: None,
+            };
         }
         stays
     }
@@ -178,9 +205,16 @@ impl Watch {
         }
     }
 
+    /// The service needs more of the request's body than has arrived, or no longer does.
+    pub(super) fn awaits_body(&self, awaits: bool) {
+        if let Phase::Busy { awaited, .. } = &mut *self.phase() {
+            *awaited = awaits.then(|| awaited.unwrap_or_else(Instant::now));
+        }
+    }
+
     /// The client takes no more of the answer at the moment, or takes it again.
     pub(super) fn stalls(&self, stalls: bool) {
-        if let Phase::Busy { stalled } | Phase::Ending { stalled } = &mut *self.phase() {
+        if let Phase::Busy { stalled, .. } | Phase::Ending { stalled } = &mut *self.phase() {
             *stalled = stalls.then(|| stalled.unwrap_or_else(Instant::now));
         }
     }
@@ -188,7 +222,7 @@ impl Watch {
     /// The end of the answer is in the server's buffer, or there is no more answer.
     pub(super) fn handed_over(&self) {
         let mut phase = self.phase();
-        if let Phase::Busy { stalled } = *phase {
+        if let Phase::Busy { stalled, .. } = *phase {
             *phase = Phase::Ending { stalled };
         }
     }
@@ -212,9 +246,13 @@ impl Watch {
         match *self.phase() {
             Phase::Silent(since) => Some((since + silent, CloseReason::Idle)),
             Phase::Header(since) => Some((since + header, CloseReason::Idle)),
-            Phase::Busy { stalled } | Phase::Ending { stalled } => {
-                stalled.map(|since| (since + idle, CloseReason::Stalled))
+            Phase::Busy { stalled, awaited } => {
+                let stalled = stalled.map(|since| (since + idle, CloseReason::Stalled));
+                let awaited = awaited.map(|since| (since + idle, CloseReason::Idle));
+                let both = stalled.into_iter().chain(awaited);
+                both.min_by_key(|(deadline, _)| *deadline)
             }
+            Phase::Ending { stalled } => stalled.map(|since| (since + idle, CloseReason::Stalled)),
             Phase::Evicted => Some((Instant::now(), CloseReason::Evicted)),
         }
     }

@@ -1,4 +1,4 @@
-//! The socket and the body of an answer, which report to the watch of their connection.
+//! The socket, the body of a request and the body of an answer, which report to the watch of their connection.
 
 use std::io::{self, IoSlice};
 use std::pin::Pin;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::task::{Context, Poll, ready};
 
 use axum::body::{Body, Bytes, HttpBody};
-use hyper::body::{Frame, SizeHint};
+use hyper::body::{Frame, Incoming, SizeHint};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 
@@ -18,6 +18,41 @@ pub(super) struct End(pub(super) Arc<Watch>);
 impl Drop for End {
     fn drop(&mut self) {
         self.0.handed_over();
+    }
+}
+
+/// The body of a request, which notices when the client owes more of it.
+pub(super) struct Arriving {
+    pub(super) body: Incoming,
+    pub(super) watch: Arc<Watch>,
+}
+
+impl HttpBody for Arriving {
+    type Data = Bytes;
+    type Error = hyper::Error;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, hyper::Error>>> {
+        let frame = Pin::new(&mut self.body).poll_frame(context);
+        self.watch.awaits_body(frame.is_pending());
+        frame
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.is_end_stream()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        self.body.size_hint()
+    }
+}
+
+/// Nobody reads the rest of the body.
+impl Drop for Arriving {
+    fn drop(&mut self) {
+        self.watch.awaits_body(false);
     }
 }
 
