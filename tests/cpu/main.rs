@@ -63,6 +63,7 @@ mod scene_resolve;
 mod scene_shapes;
 mod scene_validate;
 mod scene_warnings;
+mod sea;
 mod shader_constants;
 #[path = "../../examples/mutants/shader_plants.rs"]
 mod shader_plants;
