@@ -57,8 +57,13 @@ impl Oscillator {
     /// The oscillator with the undamped angular frequency ω, rad/s, and the damping γ, 1/s, both at least 0.
     pub fn of(angular_frequency_per_s: f64, damping_per_s: f64) -> Self {
         let (omega, gamma) = (angular_frequency_per_s, damping_per_s);
-        // Roots one by one: the product of small numbers would become 0.
-        let root = (omega - gamma).abs().sqrt() * (omega + gamma).sqrt();
+        // √|ω² − γ²| by ratios: without damping it is ω to the last digit, and squares of small numbers do not become 0.
+        let larger = omega.max(gamma);
+        let root = if larger > 0.0 {
+            larger * ((omega - gamma).abs() / larger * ((omega + gamma) / larger)).sqrt()
+        } else {
+            0.0
+        };
         let motion = if omega > gamma {
             Motion::Swinging {
                 omega_per_s: root,

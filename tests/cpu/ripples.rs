@@ -390,7 +390,7 @@ fn a_refined_basin_has_the_same_modes() {
 
 #[test]
 fn shallow_waves_run_at_the_root_of_gravity_and_depth() {
-    let radius_m = 0.02;
+    let radius_m = 0.03;
     let mut ripples = basin([4.0, 4.0], 512, &[drop([1.5, 2.25], radius_m, 1.0, 0.0)]);
     ripples.dispersion = RippleDispersion::Shallow;
     let speed_m_per_s = (GRAVITY_M_PER_S2 * 0.1).sqrt();
