@@ -34,3 +34,8 @@ pub fn with_surface_tension(k_per_m: f64, depth_m: f64) -> (f64, f64) {
         (0.0, 0.0)
     }
 }
+
+/// Angular frequency ω of [`with_surface_tension`] alone, rad/s; 0 for a wave number of 0.
+pub fn angular_frequency_with_surface_tension(k_per_m: f64, depth_m: f64) -> f64 {
+    with_surface_tension(k_per_m, depth_m).0
+}

@@ -11,6 +11,7 @@ pub mod coverage;
 pub mod dispersion;
 pub mod fresnel;
 pub mod octahedral;
+pub mod oscillator;
 pub mod refraction;
 pub mod registry;
 pub mod sea;

@@ -51,6 +51,7 @@ mod reference_lamps;
 mod reference_lens;
 mod reference_meshes;
 mod reference_texels;
+mod ripples;
 mod rooms;
 mod scene_camera;
 mod scene_facts;
