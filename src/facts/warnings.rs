@@ -29,6 +29,9 @@ pub const SCATTERING_NOT_FOLLOWED: &str = "scattering_not_followed";
 /// Code of the warning that cells are coarse for the waves; the frame adds its flux.
 pub const WAVES_UNDERSAMPLED: &str = "waves_undersampled";
 
+/// Share of the mean square slope that may be missing without a warning.
+const MAX_SLOPE_LOST: f64 = 0.01;
+
 fn warning(code: &str, message: impl Into<String>, pointer: impl Into<String>) -> Warning {
     Warning {
         pointer: Some(pointer.into()),
@@ -54,6 +57,7 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     all.extend(thin_objects(facts, meshes));
     all.extend(left_out_by_method(facts, &blocked));
     all.extend(coarse_cells(facts));
+    all.extend(smoothed_waves(facts));
     let mut of_lights = Vec::new();
     for set in &facts.lights.beam_sets {
         of_lights.extend(from_below(set));
@@ -284,6 +288,23 @@ fn coarse_cells(facts: &SceneFacts) -> Option<Warning> {
         ),
         "/quality/water_cells",
     ))
+}
+
+/// Water whose samples do not carry its shortest waves. What of the light that concerns is not known before it is traced.
+fn smoothed_waves(facts: &SceneFacts) -> Vec<Warning> {
+    let lost = facts.water.surface.slope_lost();
+    lost.filter(|(_, share)| *share > MAX_SLOPE_LOST)
+        .map(|(wave, share)| {
+            warning(
+                "waves_smoothed",
+                format!(
+                    "the samples miss {:.1} % of the mean square slope of these waves; more samples, or fewer short waves, miss less",
+                    100.0 * share
+                ),
+                format!("/water/waves/{wave}"),
+            )
+        })
+        .collect()
 }
 
 fn from_below(light: &BeamSet) -> Option<Warning> {

@@ -7,6 +7,9 @@ use std::f64::consts::TAU;
 
 use super::constants::GRAVITY_M_PER_S2;
 
+/// Dimensionless fetch g F/U² from which a JONSWAP sea no longer grows.
+const FULLY_DEVELOPED: f64 = 1.8e4;
+
 /// Level α of a fully developed sea. Source: Pierson & Moskowitz, Journal of Geophysical Research 69, 1964, p. 5188.
 const DEVELOPED_LEVEL: f64 = 8.1e-3;
 
@@ -39,11 +42,11 @@ impl FrequencySpectrum {
     /// enhancement `gamma` (at least 1): x = g F/U², α = 0.076 x^−0.22, ω_p = 2π · 3.5 (g/U) x^−0.33, β = 1.25.
     ///
     /// Source: Hasselmann et al., "Measurements of wind-wave growth and swell decay during the Joint North Sea Wave Project",
-    /// Deutsche Hydrographische Zeitschrift A8(12), 1973. The fits are from x = 10² … 10⁴. Above about 1.8·10⁴, waves are longer
-    /// than those of a fully developed sea.
+    /// Deutsche Hydrographische Zeitschrift A8(12), 1973. The fits are from x = 10² … 10⁴. From x = 1.8·10⁴ on the sea is fully developed:
+    /// a longer fetch changes nothing.
     pub fn jonswap(wind_m_per_s: f64, fetch_m: f64, gamma: f64) -> Self {
         let unit = GRAVITY_M_PER_S2 / wind_m_per_s;
-        let x = unit / wind_m_per_s * fetch_m;
+        let x = (unit / wind_m_per_s * fetch_m).min(FULLY_DEVELOPED);
         Self {
             level: 0.076 * x.powf(-0.22),
             decay: 1.25,

@@ -86,6 +86,8 @@ pub const DROP_RADIUS: Range = Range::new(1e-4, 1e4, "m");
 pub const DROP_HEIGHT: Range = Range::new(-100.0, 100.0, "m");
 /// `damping_per_s`.
 pub const DAMPING: Range = Range::new(0.0, 1e3, "1/s");
+/// Most samples of all spectra and basins of a scene: 64 MiB on the GPU.
+pub const MAX_GRID_SAMPLES: u64 = 1 << 24;
 /// Most drops of one basin.
 pub const MAX_DROPS: usize = 256;
 /// `floor.depth_m`.

@@ -116,6 +116,18 @@ impl<'de> Deserialize<'de> for Wave {
     }
 }
 
+impl Wave {
+    /// Samples of the grid on which the waves are computed; 0 for waves with a formula. A basin with reflecting walls has its mirror images
+    /// on the grid.
+    pub fn grid_samples(&self) -> u64 {
+        match self {
+            Self::Sine(_) | Self::Gerstner(_) => 0,
+            Self::Spectrum(waves) => u64::from(waves.samples).pow(2),
+            Self::Ripples(waves) => u64::from(2 * waves.samples).pow(2),
+        }
+    }
+}
+
 /// h(x, z, t) = A sin(2π/λ (x cos θ + z sin θ) − ω t + φ).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -188,7 +200,7 @@ pub struct SpectrumWaves {
     #[serde(default)]
     pub wind_direction_deg: f64,
     /// Distance over which the wind has blown, m, 1 … 10⁷. Default 300 000. `phillips` and `pierson_moskowitz` ignore it: their seas are
-    /// fully developed.
+    /// fully developed, as is that of `jonswap` and `tma` where g · fetch / wind² exceeds 1.8·10⁴.
     #[serde(default = "default_fetch")]
     pub fetch_m: f64,
     /// Peak enhancement γ of `jonswap` and `tma`, 1 … 10. Default 3.3.
@@ -206,8 +218,8 @@ pub struct SpectrumWaves {
     /// Longest wave, m, 10⁻³ … 10⁵. Default: the tile.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_wavelength_m: Option<f64>,
-    /// Significant wave height, four times the standard deviation of the height, m, 0 … 100: the sea of this seed is scaled to it
-    /// exactly. Default: what the spectrum has in its band.
+    /// Significant wave height, four times the standard deviation of the height over tile and time, m, 0 … 100: the sea of this seed is
+    /// scaled to it exactly. Default: what the spectrum has in its band.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub significant_height_m: Option<f64>,
     /// Side of the tile, m, 0.01 … 10⁴.

@@ -72,6 +72,18 @@ fn water(findings: &mut Findings, water: &Water, limits: &Limits) {
     if !findings.count("/water/waves", "waves", waves.len(), limits.max_waves) {
         return;
     }
+    let samples: u64 = waves.iter().map(Wave::grid_samples).sum();
+    if samples > ranges::MAX_GRID_SAMPLES {
+        findings.over_limit(
+            "/water/waves",
+            format!("all spectra and basins together have {samples} samples"),
+            format!(
+                "at most {}, as of four spectra of 2048 × 2048",
+                ranges::MAX_GRID_SAMPLES
+            ),
+        );
+        return;
+    }
     for (index, wave) in waves.iter().enumerate() {
         let at = |field: &str| format!("/water/waves/{index}/{field}");
         let angle = &ranges::TURNING_ANGLE;
@@ -132,7 +144,8 @@ fn spectrum(findings: &mut Findings, waves: &SpectrumWaves, at: &dyn Fn(&str) ->
     findings.number(at("gamma"), waves.gamma, &ranges::GAMMA);
     findings.number(at("swell"), waves.swell, &ranges::SWELL);
     let is_sound = findings.number(at("tile_m"), waves.tile_m, &ranges::TILE);
-    findings.integer::<ranges::SpectrumSamples>(&at("samples"), waves.samples);
+    let is_sound =
+        is_sound & findings.integer::<ranges::SpectrumSamples>(&at("samples"), waves.samples);
     let wavelength = &ranges::WAVELENGTH;
     for (field, value, range) in [
         ("min_wavelength_m", waves.min_wavelength_m, wavelength),
@@ -148,7 +161,7 @@ fn spectrum(findings: &mut Findings, waves: &SpectrumWaves, at: &dyn Fn(&str) ->
             findings.number(at(field), value, range);
         }
     }
-    if is_sound && waves.samples > 0 {
+    if is_sound {
         let [shortest_m, longest_m] = waves.band_m();
         if shortest_m > longest_m {
             findings.invalid(

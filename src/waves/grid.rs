@@ -17,6 +17,8 @@ pub(super) struct Heights {
     pub(super) corner_m: DVec2,
     /// Length of the shortest wave, m.
     pub(super) shortest_wave_m: f64,
+    /// Share of the mean square slope that the surface through the samples misses, 0 … 1.
+    pub(super) slope_lost: f64,
     /// What it is, for plans: "a jonswap sea", "a basin with 3 drops".
     pub(super) description: String,
 }

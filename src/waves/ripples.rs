@@ -63,6 +63,7 @@ pub(super) fn heights(ripples: &Ripples, scene: &Scene, refinement: u32) -> Heig
         size,
         step_m,
         corner_m,
+        slope_lost: slope_lost(ripples),
         shortest_wave_m,
         description: match ripples.drops.len() {
             0 => "a basin without drops".to_owned(),

@@ -11,7 +11,7 @@ use rustfft::num_complex::Complex64;
 use super::clock::Clock;
 use super::grid::Heights;
 use super::spectrum::Spectrum;
-use super::{chance, fourier};
+use super::{chance, fourier, spline};
 use crate::physics::turns::sin_cos_turns;
 use crate::scene::{Scene, SpectrumModel, SpectrumWaves};
 
@@ -31,24 +31,27 @@ pub(super) fn heights(waves: &SpectrumWaves, scene: &Scene, refinement: u32) -> 
         size: [samples; 2],
         step_m: glam::DVec2::splat(waves.tile_m / samples as f64),
         corner_m: glam::DVec2::ZERO,
-        shortest_wave_m: sea.map_or(f64::INFINITY, |_| waves.band_m()[0]),
+        shortest_wave_m: sea.as_ref().map_or(f64::INFINITY, |_| waves.band_m()[0]),
+        slope_lost: sea.map_or(0.0, |sea| sea.slope_lost),
         description: description(waves.model).to_owned(),
     }
 }
 
 fn description(model: SpectrumModel) -> &'static str {
     match model {
-        SpectrumModel::Phillips => "a phillips sea",
-        SpectrumModel::PiersonMoskowitz => "a pierson_moskowitz sea",
-        SpectrumModel::Jonswap => "a jonswap sea",
-        SpectrumModel::Tma => "a tma sea",
-        SpectrumModel::Elfouhaily => "an elfouhaily sea",
+        SpectrumModel::Phillips => "a Phillips sea",
+        SpectrumModel::PiersonMoskowitz => "a Pierson–Moskowitz sea",
+        SpectrumModel::Jonswap => "a JONSWAP sea",
+        SpectrumModel::Tma => "a TMA sea",
+        SpectrumModel::Elfouhaily => "an Elfouhaily sea",
     }
 }
 
 /// The waves of a sea at one time.
 struct Sea {
     coefficients: fourier::HalfSpectrum,
+    /// See [`Heights::slope_lost`]; for the grid without refinement.
+    slope_lost: f64,
 }
 
 /// The waves with one i of 0 and more, and their opposites.
@@ -57,6 +60,8 @@ struct Column {
     coefficients: Vec<Complex64>,
     /// Mean squared height over tile and time, m².
     variance_m2: f64,
+    /// Mean squared slope times (tile side)², and the part of it that the spline carries, m².
+    slopes: [f64; 2],
 }
 
 impl Sea {
@@ -75,6 +80,8 @@ impl Sea {
         if variance_m2 < NO_VARIANCE_M2 {
             return None;
         }
+        let sum = |part: usize| -> f64 { columns.iter().map(|column| column.slopes[part]).sum() };
+        let slope_lost = (1.0 - sum(1) / sum(0)).max(0.0);
         let mut coefficients: Vec<_> = columns.into_iter().map(|c| c.coefficients).collect();
         if let Some(height_m) = waves.significant_height_m {
             if height_m == 0.0 {
@@ -85,7 +92,10 @@ impl Sea {
                 *coefficient *= scale;
             }
         }
-        Some(Self { coefficients })
+        Some(Self {
+            coefficients,
+            slope_lost,
+        })
     }
 }
 
@@ -97,6 +107,8 @@ fn column(waves: &SpectrumWaves, spectrum: &Spectrum, clock: &Clock, i: i32, rea
     let step_per_m = TAU / waves.tile_m;
     let mut coefficients = vec![Complex64::ZERO; 2 * reach as usize + 1];
     let mut variance_m2 = 0.0;
+    let mut slopes = [0.0; 2];
+    let carried_along_x = spline::carried(f64::from(i) / f64::from(waves.samples));
     let first = if i == 0 { 1 } else { -reach };
     for j in first..=reach {
         let distance = f64::from(i).hypot(f64::from(j));
@@ -112,6 +124,10 @@ fn column(waves: &SpectrumWaves, spectrum: &Spectrum, clock: &Clock, i: i32, rea
         let [(along, a), (against, b)] = [(i, j, variances[0]), (-i, -j, variances[1])]
             .map(|(i, j, variance)| amplitude(waves.seed, i, j, variance, phase));
         variance_m2 += a + b;
+        let carried = carried_along_x * spline::carried(f64::from(j) / f64::from(waves.samples));
+        let slope = (a + b) * distance * distance;
+        slopes[0] += slope;
+        slopes[1] += slope * carried * carried;
         coefficients[(reach + j) as usize] = 0.5 * (along + against.conj());
     }
     if i == 0 {
@@ -122,6 +138,7 @@ fn column(waves: &SpectrumWaves, spectrum: &Spectrum, clock: &Clock, i: i32, rea
     Column {
         coefficients,
         variance_m2,
+        slopes,
     }
 }
 

@@ -202,6 +202,14 @@ impl Spline {
     }
 }
 
+/// Amplitude of a wave of `frequency`, in waves per sample, in the spline through samples of one of amplitude 1; the rest is in other
+/// frequencies. Source: Unser, Aldroubi and Eden 1993, the Fourier transform of the cardinal spline.
+pub(super) fn carried(frequency: f64) -> f64 {
+    let x = std::f64::consts::PI * frequency;
+    let sinc = if x == 0.0 { 1.0 } else { x.sin() / x };
+    sinc.powi(4) * 3.0 / (2.0 + (2.0 * x).cos())
+}
+
 fn wrapped(index: i64, count: usize) -> usize {
     index.rem_euclid(count as i64) as usize
 }

@@ -78,11 +78,14 @@ struct Grid {
     spline: Spline,
     shortest_wave_m: f64,
     description: String,
+    /// Index into the scene's waves, and the share of its mean square slope that the spline misses.
+    slope_lost: (usize, f64),
 }
 
 impl Grid {
-    fn of(heights: Heights) -> Self {
+    fn of((wave, heights): (usize, Heights)) -> Self {
         Self {
+            slope_lost: (wave, heights.slope_lost),
             shortest_wave_m: heights.shortest_wave_m,
             description: heights.description.clone(),
             spline: heights.spline(),
@@ -107,16 +110,17 @@ impl Surface {
     /// The same with `refinement` times as many samples along the sides of grids, so that their splines miss less of what they stand for;
     /// for references. Of a grid that would have more than 4096 samples along a side, the refinement is smaller.
     pub fn refined(scene: &Scene, refinement: u32) -> Self {
-        let grids = scene.water.waves.iter().filter_map(|wave| match wave {
+        let waves = scene.water.waves.iter().enumerate();
+        let grids = waves.filter_map(|(index, wave)| match wave {
             Wave::Sine(_) | Wave::Gerstner(_) => None,
             Wave::Spectrum(waves) => {
                 let refinement = within(MAX_REFINED, refinement, waves.samples);
-                Some(sea::heights(waves, scene, refinement))
+                Some((index, sea::heights(waves, scene, refinement)))
             }
             Wave::Ripples(waves) => {
                 // Mirror images double the sides.
                 let refinement = within(MAX_REFINED, refinement, 2 * waves.samples);
-                Some(ripples::heights(waves, scene, refinement))
+                Some((index, ripples::heights(waves, scene, refinement)))
             }
         });
         Self {
@@ -245,6 +249,12 @@ impl Surface {
                 self.trochoids.shortest_wave_m(),
             ])
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Of each kind of water that is computed on a grid: its index into the scene's waves, and the share of its mean square slope, 0 … 1,
+    /// that the surface through the samples misses.
+    pub fn slope_lost(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.grids.iter().map(|grid| grid.slope_lost)
     }
 
     /// The kind of water in words, for sentences such as "the sun shines into …".

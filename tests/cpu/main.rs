@@ -64,6 +64,7 @@ mod scene_resolve;
 mod scene_shapes;
 mod scene_validate;
 mod scene_warnings;
+mod scene_waves;
 mod sea;
 mod shader_constants;
 #[path = "../../examples/mutants/shader_plants.rs"]

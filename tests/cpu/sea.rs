@@ -496,7 +496,7 @@ fn spreadings_turn_with_the_wind() {
 fn the_band_and_the_name_are_reported() {
     let surface = Surface::of(&scene_of(json!({ "min_wavelength_m": 5 })));
     assert_eq!(surface.shortest_wave_m(), 5.0);
-    assert_eq!(surface.description(), "water with a jonswap sea");
+    assert_eq!(surface.description(), "water with a JONSWAP sea");
     assert!((Surface::of(&scene_of(json!({}))).shortest_wave_m() - 3.125).abs() < 1e-12);
     for flat in [
         json!({ "wind_speed_m_s": 0 }),
@@ -557,4 +557,26 @@ fn extreme_seas_are_finite() {
             }
         }
     }
+}
+
+/// What a spline misses: of waves of four samples 2.9 % of the mean square slope along an axis, of eight 0.1 %.
+#[test]
+fn what_the_samples_miss_is_told() {
+    let lost = |shortest_m: f64| {
+        let scene: Scene = serde_json::from_value(serde_json::json!({
+            "water": { "waves": [{ "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 2 }, {
+                "kind": "spectrum", "model": "phillips", "wind_speed_m_s": 3, "tile_m": 16, "samples": 64,
+                "min_wavelength_m": shortest_m, "max_wavelength_m": shortest_m * 1.1
+            }] }
+        }))
+        .unwrap();
+        Surface::of(&scene).slope_lost().collect::<Vec<_>>()
+    };
+    let [(wave, four)] = lost(1.0)[..] else {
+        panic!("one grid")
+    };
+    assert_eq!(wave, 1);
+    assert!((0.01..0.03).contains(&four), "{four}");
+    let eight = lost(2.0)[0].1;
+    assert!(eight < 0.002, "{eight}");
 }

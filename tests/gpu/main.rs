@@ -37,6 +37,7 @@ mod lamps;
 mod layers;
 mod level_maps;
 mod level_maps_service;
+mod living_water;
 mod memory;
 mod own_passes;
 mod planes;
