@@ -57,6 +57,7 @@ fn trochoid_at(w: vec4f, steepness: f32, p_m: vec2f) -> vec3f {
 // The cubic B-spline through the samples of a grid.
 fn grid_surface_at(place: vec4f, shape: vec4f, p_m: vec2f) -> vec3f {
     var at = (p_m - place.xy) * place.zw;
+    // Rounding may leave it just below 0 or at the end; the indices below wrap.
     at -= shape.xy * floor(at / shape.xy);
     let cell = floor(at);
     let t = at - cell;
@@ -66,7 +67,7 @@ fn grid_surface_at(place: vec4f, shape: vec4f, p_m: vec2f) -> vec3f {
     let dz = spline_slopes(t.y);
     let size = vec2u(shape.xy);
     // The first of four rows and columns, one before the cell.
-    let first = vec2u(cell) + size - 1u;
+    let first = vec2u(vec2i(cell) + vec2i(size) - 1);
     var surface = vec3f(0.0);
     for (var j = 0u; j < 4u; j++) {
         let row = ((first.y + j) % size.y) * size.x;

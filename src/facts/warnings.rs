@@ -11,7 +11,7 @@ use super::unfollowed;
 use super::window::Rect;
 use super::{BeamSet, SceneFacts};
 use crate::mesh::{Mesh, mtl, repair};
-use crate::scene::ResolvedScene;
+use crate::scene::{ResolvedScene, Scene, Wave};
 use crate::stats::Warning;
 
 /// Fewest cells per shortest wave; with fewer, caustics are blurred.
@@ -58,6 +58,7 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     all.extend(left_out_by_method(facts, &blocked));
     all.extend(coarse_cells(facts));
     all.extend(smoothed_waves(facts));
+    all.extend(seas_without_waves(facts, &resolved.scene));
     let mut of_lights = Vec::new();
     for set in &facts.lights.beam_sets {
         of_lights.extend(from_below(set));
@@ -288,6 +289,25 @@ fn coarse_cells(facts: &SceneFacts) -> Option<Warning> {
         ),
         "/quality/water_cells",
     ))
+}
+
+/// Spectra that have no wave, although the scene does not ask for a height of 0.
+fn seas_without_waves(facts: &SceneFacts, scene: &Scene) -> Vec<Warning> {
+    let flat = facts.water.surface.flat_grids();
+    flat.filter_map(|wave| match scene.water.waves.get(wave) {
+        Some(Wave::Spectrum(waves)) if waves.significant_height_m != Some(0.0) => {
+            let [shortest_m, longest_m] = waves.band_m();
+            Some(warning(
+                "sea_without_waves",
+                format!(
+                    "the spectrum has no wave between {shortest_m:.4} and {longest_m:.4} m on this tile, so the water is flat; a larger tile, another band or more wind makes waves"
+                ),
+                format!("/water/waves/{wave}"),
+            ))
+        }
+        _ => None,
+    })
+    .collect()
 }
 
 /// Water whose samples do not carry its shortest waves. What of the light that concerns is not known before it is traced.

@@ -88,6 +88,8 @@ pub const DROP_HEIGHT: Range = Range::new(-100.0, 100.0, "m");
 pub const DAMPING: Range = Range::new(0.0, 1e3, "1/s");
 /// Most samples of all spectra and basins of a scene: 64 MiB on the GPU.
 pub const MAX_GRID_SAMPLES: u64 = 1 << 24;
+/// Most standing waves of all drops of a scene: a few seconds.
+pub const MAX_SWINGS: u64 = 1 << 28;
 /// Most drops of one basin.
 pub const MAX_DROPS: usize = 256;
 /// `floor.depth_m`.

@@ -79,7 +79,7 @@ impl Default for Water {
     }
 }
 
-/// Dispersion relation of gravity waves.
+/// Dispersion relation of sines and Gerstner waves. Spectra and ripples have surface tension as well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Dispersion {
@@ -117,13 +117,26 @@ impl<'de> Deserialize<'de> for Wave {
 }
 
 impl Wave {
+    /// Number of standing waves that have to be computed for all drops; 0 for other kinds.
+    pub fn swings(&self) -> u64 {
+        match self {
+            Self::Ripples(waves) => u64::from(waves.samples)
+                .saturating_pow(2)
+                .saturating_mul(waves.drops.len() as u64),
+            _ => 0,
+        }
+    }
+
     /// Samples of the grid on which the waves are computed; 0 for waves with a formula. A basin with reflecting walls has its mirror images
     /// on the grid.
     pub fn grid_samples(&self) -> u64 {
         match self {
             Self::Sine(_) | Self::Gerstner(_) => 0,
-            Self::Spectrum(waves) => u64::from(waves.samples).pow(2),
-            Self::Ripples(waves) => u64::from(2 * waves.samples).pow(2),
+            Self::Spectrum(waves) => u64::from(waves.samples).saturating_pow(2),
+            Self::Ripples(waves) => match waves.walls {
+                Walls::Periodic => u64::from(waves.samples).saturating_pow(2),
+                Walls::Reflecting => (2 * u64::from(waves.samples)).saturating_pow(2),
+            },
         }
     }
 }
@@ -199,7 +212,7 @@ pub struct SpectrumWaves {
     /// Direction in which the wind blows, degrees from +X towards +Z, −10⁶ … 10⁶. Default 0.
     #[serde(default)]
     pub wind_direction_deg: f64,
-    /// Distance over which the wind has blown, m, 1 … 10⁷. Default 300 000. `phillips` and `pierson_moskowitz` ignore it: their seas are
+    /// Distance over which the wind has blown, m, 1 … 10⁷; the measurements behind the models are from g · fetch / wind² = 10² … 10⁴. Default 300 000. `phillips` and `pierson_moskowitz` ignore it: their seas are
     /// fully developed, as is that of `jonswap` and `tma` where g · fetch / wind² exceeds 1.8·10⁴.
     #[serde(default = "default_fetch")]
     pub fetch_m: f64,
@@ -219,7 +232,7 @@ pub struct SpectrumWaves {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_wavelength_m: Option<f64>,
     /// Significant wave height, four times the standard deviation of the height over tile and time, m, 0 … 100: the sea of this seed is
-    /// scaled to it exactly. Default: what the spectrum has in its band.
+    /// scaled to it exactly, if the spectrum has any wave in its band. Default: what the spectrum has there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub significant_height_m: Option<f64>,
     /// Side of the tile, m, 0.01 … 10⁴.
@@ -234,7 +247,8 @@ pub struct SpectrumWaves {
     /// Selects one sea of many, 0 … 2³² − 1. Default 0.
     #[serde(default, deserialize_with = "integer::<Seed, _>")]
     pub seed: u32,
-    /// Time after which the sea repeats, s, 10⁻³ … 10⁶: frequencies are rounded to multiples of its reciprocal. Default: never.
+    /// Time after which the sea repeats, s, 10⁻³ … 10⁶: frequencies are rounded to multiples of its reciprocal, at least to one. Default:
+    /// never.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loop_s: Option<f64>,
 }
@@ -275,7 +289,7 @@ pub enum SpectrumModel {
     PiersonMoskowitz,
     /// JONSWAP (Hasselmann et al. 1973): a sea that grows with the fetch.
     Jonswap,
-    /// TMA (Bouws et al. 1985): JONSWAP in water of the floor's depth.
+    /// TMA (Bouws et al. 1985): JONSWAP in water of the floor's depth; without a floor, or with `water.dispersion` = `deep`, as `jonswap`.
     Tma,
     /// Elfouhaily et al. (1997): with the short waves that the wind makes.
     Elfouhaily,
@@ -321,7 +335,8 @@ pub struct Ripples {
     pub walls: Walls,
     /// The drops that make the ripples, at most 256.
     pub drops: Vec<RippleDrop>,
-    /// Rate γ at which amplitudes fall, as e^(−γ t), 1/s, 0 … 10³. Default 0.
+    /// Rate γ at which amplitudes fall, as e^(−γ t), 1/s, 0 … 10³. Waves that swing slower than γ creep back without swinging, the more
+    /// slowly the larger γ is. Default 0.
     #[serde(default)]
     pub damping_per_s: f64,
     /// How fast waves run. Default `finite_depth`.
@@ -333,15 +348,16 @@ fn default_basin_samples() -> u32 {
     256
 }
 
-/// A drop: at its time, a mound at rest is added to the surface, h = height · exp(−r²/(2 radius²)). The water that it would add to the
-/// basin is taken from all of it, so that the mean height stays 0.
+/// A drop: at its time, a mound at rest is added to the surface, h = height · exp(−r²/(2 radius²)). What of it lies beyond a wall is folded
+/// back into the basin (periodic: enters at the opposite side). The water that it would add to the basin is taken from all of it, so that
+/// the mean height stays 0. A drop narrower than about two samples is not carried by them; `waves_smoothed` says how much is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RippleDrop {
     /// Middle (x, z), m, within the basin.
     #[schema(min_items = 2, max_items = 2)]
     pub position_m: [f64; 2],
-    /// Standard deviation of the mound, m, 10⁻⁴ … 10⁴.
+    /// Standard deviation of the mound, m, 10⁻⁴ … 10⁴, and at most the shorter side of the basin.
     pub radius_m: f64,
     /// Height of the mound, m, −100 … 100.
     pub height_m: f64,

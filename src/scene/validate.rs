@@ -72,7 +72,8 @@ fn water(findings: &mut Findings, water: &Water, limits: &Limits) {
     if !findings.count("/water/waves", "waves", waves.len(), limits.max_waves) {
         return;
     }
-    let samples: u64 = waves.iter().map(Wave::grid_samples).sum();
+    let sum = |of: fn(&Wave) -> u64| waves.iter().map(of).fold(0, u64::saturating_add);
+    let samples = sum(Wave::grid_samples);
     if samples > ranges::MAX_GRID_SAMPLES {
         findings.over_limit(
             "/water/waves",
@@ -80,6 +81,18 @@ fn water(findings: &mut Findings, water: &Water, limits: &Limits) {
             format!(
                 "at most {}, as of four spectra of 2048 × 2048",
                 ranges::MAX_GRID_SAMPLES
+            ),
+        );
+        return;
+    }
+    let swings = sum(Wave::swings);
+    if swings > ranges::MAX_SWINGS {
+        findings.over_limit(
+            "/water/waves",
+            format!("all drops together move {swings} waves of their basins"),
+            format!(
+                "at most {} (samples² × drops, as of one basin of 1024 samples with 256 drops)",
+                ranges::MAX_SWINGS
             ),
         );
         return;
@@ -223,7 +236,18 @@ fn ripples(findings: &mut Findings, waves: &Ripples, at: &dyn Fn(&str) -> String
     }
     for (index, drop) in waves.drops.iter().enumerate() {
         let at = |field: &str| at(&format!("drops/{index}/{field}"));
-        findings.number(at("radius_m"), drop.radius_m, &ranges::DROP_RADIUS);
+        let is_sized = findings.number(at("radius_m"), drop.radius_m, &ranges::DROP_RADIUS);
+        let shorter_m = (waves.max_m[0] - waves.min_m[0]).min(waves.max_m[1] - waves.min_m[1]);
+        if is_sound && is_sized && drop.radius_m > shorter_m {
+            findings.invalid(
+                at("radius_m"),
+                format!(
+                    "the drop is wider than the basin, whose shorter side is {} m",
+                    number(shorter_m)
+                ),
+                "at most the shorter side".to_owned(),
+            );
+        }
         findings.number(at("height_m"), drop.height_m, &ranges::DROP_HEIGHT);
         findings.number(at("at_s"), drop.at_s, &ranges::TIME);
         let is_placed = findings.numbers(&at("position_m"), &drop.position_m, coordinate);

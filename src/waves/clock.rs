@@ -37,9 +37,11 @@ impl Clock {
         }
     }
 
-    /// Phase of a wave of `frequency_hz`, rounded to whole units, in 2⁻⁶⁴ turns.
+    /// Phase of a wave of `frequency_hz`, rounded to whole units, in 2⁻⁶⁴ turns. A wave that moves has at least one unit: a pair of opposite
+    /// waves that stood still would have another height than the spectrum says.
     pub(super) fn phase(&self, frequency_hz: f64) -> u64 {
-        let units = (frequency_hz * self.unit_s).round() as u128;
+        let least = if frequency_hz > 0.0 { 1.0 } else { 0.0 };
+        let units = (frequency_hz * self.unit_s).round().max(least) as u128;
         // What the product loses are whole turns.
         (units.wrapping_mul(self.phase) >> 32) as u64
     }

@@ -350,11 +350,11 @@ impl Bounds {
                 |a, b| (a.0.max(b.0), std::array::from_fn(|i| a.1[i].max(b.1[i]))),
             );
         // Between points half a step apart, a function exceeds its bilinear interpolation by less than this.
-        let quarter = step.length_squared() / 32.0;
+        let over = |along_x: f64, along_z: f64| (sx * sx * along_x + sz * sz * along_z) / 32.0;
         let most_coefficient = coefficients.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
         Self {
-            height_m: most_coefficient.min(seen_height + quarter * second_per_m),
-            slopes: seen_slopes.map(|slope| slope + quarter * third_per_m2),
+            height_m: most_coefficient.min(seen_height + over(xx, zz)),
+            slopes: seen_slopes.map(|slope| slope + over(xxx.hypot(xxz), xzz.hypot(zzz))),
             second_per_m,
             third_per_m2,
         }

@@ -257,6 +257,15 @@ impl Surface {
         self.grids.iter().map(|grid| grid.slope_lost)
     }
 
+    /// Water that is computed on a grid and is flat: indices into the scene's waves.
+    pub fn flat_grids(&self) -> impl Iterator<Item = usize> {
+        let flat = self
+            .grids
+            .iter()
+            .filter(|grid| grid.spline.max_height_m() == 0.0);
+        flat.map(|grid| grid.slope_lost.0)
+    }
+
     /// The kind of water in words, for sentences such as "the sun shines into …".
     pub fn description(&self) -> String {
         if self.max_slope() == 0.0 {

@@ -176,12 +176,18 @@ impl Trochoids {
         self.components.iter().map(most).sum()
     }
 
+    /// The length of a sine whose crest is as narrow: the slope goes from its largest to its most negative value within about
+    /// (1 − s)^1.5 of the half of a sine's length.
+    fn crest_m(c: &Trochoid) -> f64 {
+        (1.0 - c.steepness).powf(1.5) / c.frequency_per_m.length()
+    }
+
     /// See [`super::Surface::shortest_wave_m`].
     pub(super) fn shortest_wave_m(&self) -> f64 {
         self.components
             .iter()
             .filter(|c| c.amplitude_m > 0.0)
-            .map(|c| 1.0 / c.frequency_per_m.length())
+            .map(Self::crest_m)
             .fold(f64::INFINITY, f64::min)
     }
 

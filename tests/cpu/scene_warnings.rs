@@ -287,3 +287,43 @@ fn many_objects_share_the_rays_that_sample_their_shadows() {
         is_near(warning.flux_w.unwrap()[0], 0.25, 0.3);
     }
 }
+
+#[test]
+fn seas_without_waves_and_smoothed_waves_are_told() {
+    let told = |waves: Value| -> Vec<(String, Option<String>)> {
+        let mut scene = scene(&[sun(60.0)], &json!({}));
+        scene["water"]["waves"] = waves;
+        let found = warnings_of(scene, &[]);
+        found
+            .into_iter()
+            .map(|warning| (warning.code, warning.pointer))
+            .collect()
+    };
+    let sea = |fields: Value| {
+        let mut sea = json!({ "kind": "spectrum", "model": "jonswap", "wind_speed_m_s": 5, "tile_m": 10, "samples": 64 });
+        sea.as_object_mut()
+            .unwrap()
+            .extend(fields.as_object().unwrap().clone());
+        sea
+    };
+    let sine = json!({ "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 4 });
+    let pointer = Some("/water/waves/1".to_owned());
+    for fields in [
+        json!({ "min_wavelength_m": 8, "max_wavelength_m": 9 }),
+        json!({ "wind_speed_m_s": 0, "significant_height_m": 1 }),
+    ] {
+        let found = told(json!([sine, sea(fields)]));
+        assert!(
+            found.contains(&("sea_without_waves".to_owned(), pointer.clone())),
+            "{found:?}"
+        );
+    }
+    assert!(told(json!([sea(json!({ "significant_height_m": 0 }))])).is_empty());
+    let small = json!({ "kind": "ripples", "min_m": [0, 0], "max_m": [4, 4], "samples": 16,
+                        "drops": [{ "position_m": [2, 2], "radius_m": 0.05, "height_m": 0.01 }] });
+    let found = told(json!([sine, small]));
+    assert!(
+        found.contains(&("waves_smoothed".to_owned(), pointer)),
+        "{found:?}"
+    );
+}

@@ -59,7 +59,7 @@ fn every_range_holds_its_ends_and_nothing_beyond() {
         (spectrum(), "samples", [256.0, 2048.0], [32.0, 4096.0]),
         (ripples(), "samples", [16.0, 1024.0], [15.0, 1025.0]),
         (ripples(), "damping_per_s", [0.0, 1e3], [-0.1, 1.1e3]),
-        (ripples(), "drops/0/radius_m", [1e-4, 1e4], [0.0, 1.1e4]),
+        (ripples(), "drops/0/radius_m", [1e-4, 2.0], [0.0, 2.1]),
         (
             ripples(),
             "drops/0/height_m",
@@ -142,4 +142,13 @@ fn grids_are_bounded_together() {
     let issue = only(&scene, "/water/waves");
     assert_eq!(issue.kind, IssueKind::LimitExceeded);
     assert!(issue.accepted.contains("16777216"), "{issue}");
+    // So is the work of all drops.
+    let mut busy = ripples();
+    busy["samples"] = json!(1024);
+    busy["drops"] = json!(vec![busy["drops"][0].clone(); 256]);
+    scene["water"]["waves"] = json!([busy]);
+    assert_eq!(findings(&scene), []);
+    scene["water"]["waves"] = json!([busy, busy]);
+    let issue = only(&scene, "/water/waves");
+    assert_eq!(issue.kind, IssueKind::LimitExceeded);
 }

@@ -79,11 +79,7 @@ fn a_wrong_sign_in_any_of_them_is_caught() {
             "exp(-c_per_m * length_m)",
             "exp(-0.5 * c_per_m * length_m)",
         ),
-        (
-            "shared/water_surface.wgsl",
-            "+ w.phase_turns",
-            "- w.phase_turns",
-        ),
+        ("shared/water_surface.wgsl", "+ w.w)", "- w.w)"),
     ];
     for (file, from, to) in plants {
         let planted = methods::embedded().with_replacement(file, from, to);
