@@ -3,13 +3,13 @@
 //! Mesa's Vulkan layer `VK_LAYER_MESA_device_select` asks a Wayland display for its GPU. Where `XDG_RUNTIME_DIR` is no absolute path, as in
 //! containers, libwayland prints `error: XDG_RUNTIME_DIR is invalid or not set in the environment.` to stderr. The Vulkan loader
 //! switches the layer off for processes that start with `NODEVICE_SELECT` in their environment, and there is no other way to switch off
-//! this layer alone. A process may not change its own environment safely, so the program replaces itself: same process, same
-//! arguments, one more variable.
+//! this layer alone. Where the user asks the layer for a device, it stays on and gets an `XDG_RUNTIME_DIR` without a display instead. A
+//! process may not change its own environment safely, so the program replaces itself: same process, same arguments, one more variable.
 
-/// Starts the program again with the layer off, if the layer would print an error. Returns if that is not needed or not possible.
+/// Starts the program again with the layer off or quiet, if the layer would print an error. Returns if that is not needed or not possible.
 ///
-/// The line still appears where the user asks the layer for a device (`DRI_PRIME`, `MESA_VK_DEVICE_SELECT`), where `/proc` is missing, and
-/// where the loader was started with the program as its argument (`ld.so caustica`).
+/// The line still appears where `/proc` is missing, and where the loader was started with the program as its argument
+/// (`ld.so caustica`).
 pub(super) fn without_device_select() {
     #[cfg(target_os = "linux")]
     linux::without_device_select();
@@ -25,26 +25,33 @@ mod linux {
 
     /// Switches the layer off. Once it is set, the program does not start itself again.
     const OFF: &str = "NODEVICE_SELECT";
-    /// Requests to the layer: where one of them is set, the layer stays.
+    /// What the user asks the layer for: where one of them is set, the layer stays on.
     const REQUESTS: [&str; 2] = ["MESA_VK_DEVICE_SELECT", "DRI_PRIME"];
+    /// Folder in which the layer looks for a display. Only its path has to be absolute: in this one there is none.
+    const DISPLAY: &str = "XDG_RUNTIME_DIR";
+    const WITHOUT_DISPLAY: &str = "/nonexistent";
 
     pub(super) fn without_device_select() {
-        let has_display =
-            var_os("XDG_RUNTIME_DIR").is_some_and(|dir| Path::new(&dir).is_absolute());
+        let has_display = var_os(DISPLAY).is_some_and(|dir| Path::new(&dir).is_absolute());
         let is_set = |name: &&str| var_os(name).is_some();
-        if has_display || is_set(&OFF) || REQUESTS.iter().any(is_set) {
+        if has_display || is_set(&OFF) {
             return;
         }
+        let (name, value) = if REQUESTS.iter().any(is_set) {
+            (DISPLAY, WITHOUT_DISPLAY)
+        } else {
+            (OFF, "1")
+        };
         let Some(program) = own_program() else {
             return;
         };
         let mut arguments = args_os();
         let mut command = Command::new(program);
-        if let Some(name) = arguments.next() {
-            command.arg0(name);
+        if let Some(own_name) = arguments.next() {
+            command.arg0(own_name);
         }
         // Returns only if it fails.
-        let _ = command.args(arguments).env(OFF, "1").exec();
+        let _ = command.args(arguments).env(name, value).exec();
         ignore_closed_pipes();
     }
 

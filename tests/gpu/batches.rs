@@ -7,6 +7,11 @@ use super::scene_files;
 
 /// A small view of the pool that is far too bright, on a machine without display.
 fn program(command: &str, more: &[&str]) -> Output {
+    asking_for_device(None, command, more)
+}
+
+/// The same with a variable by which the user asks Mesa for a device.
+fn asking_for_device(variable: Option<&str>, command: &str, more: &[&str]) -> Output {
     let mut process = Command::new(env!("CARGO_BIN_EXE_caustica"));
     for name in [
         "NODEVICE_SELECT",
@@ -15,6 +20,9 @@ fn program(command: &str, more: &[&str]) -> Output {
         "DRI_PRIME",
     ] {
         process.env_remove(name);
+    }
+    if let Some(variable) = variable {
+        process.env(variable, "1");
     }
     process
         .arg(command)
@@ -36,8 +44,11 @@ fn said(output: &Output) -> String {
 fn a_run_that_succeeds_prints_no_error() {
     let folder = Folder::new();
     let picture = folder.0.join("x.png");
-    let text = said(&program("render", &["-o", picture.to_str().unwrap()]));
-    assert!(!text.contains("error:"), "{text}");
+    for variable in [None, Some("DRI_PRIME")] {
+        let words = ["-o", picture.to_str().unwrap()];
+        let text = said(&asking_for_device(variable, "render", &words));
+        assert!(!text.contains("error:"), "{variable:?}: {text}");
+    }
 }
 
 #[test]
