@@ -1,6 +1,6 @@
 //! The scene: the JSON that a request consists of.
 //!
-//! - `types`, `quality`, `dials`: the fields (`dials`: the choice of a method, and the dials that only this method has);
+//! - `types`, `waves`, `quality`, `dials`: the fields (`dials`: the choice of a method, and the dials that only this method has);
 //! - `json` reads text, `strict` reads values, `parse` puts the two together;
 //! - `ranges`, `validate`, `validate_output`: which values are refused;
 //! - `overrides`: single fields replaced from outside, as by command-line flags;
@@ -29,9 +29,11 @@ mod strict;
 pub mod types;
 pub mod validate;
 mod validate_output;
+pub mod waves;
 
 pub use dials::{Dial, DialKind, DialValue, DialWord, MethodChoice};
 pub use error::{Issue, IssueKind, SceneError};
 pub use quality::Quality;
 pub use resolve::{ResolvedScene, resolve};
 pub use types::*;
+pub use waves::*;

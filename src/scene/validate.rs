@@ -7,11 +7,9 @@ use super::findings::Findings;
 use super::parse::ROTATION_LENGTH_TOLERANCE;
 use super::quality::Quality;
 use super::ranges::{self, number};
-use super::types::{
-    Camera, Floor, GerstnerWave, Intrinsics, Light, Object, Output, Ripples, Scale, Scene,
-    SpectrumWaves, Water, Wave,
-};
+use super::types::{Camera, Floor, Intrinsics, Light, Object, Output, Scale, Scene, Water};
 use super::validate_output;
+use super::waves::{GerstnerWave, Ripples, SpectrumWaves, Wave};
 use crate::config::Limits;
 
 /// Smallest distance from a camera to its target, m.

@@ -23,32 +23,28 @@ struct Sine {
     phase_turns: f64,
 }
 
-/// A wave that runs without changing its shape.
-pub(super) struct Running {
-    pub(super) wavelength_m: f64,
-    pub(super) direction_deg: f64,
-    pub(super) phase_deg: f64,
-    pub(super) period_s: Option<f64>,
-}
-
-impl Running {
-    /// Spatial frequency, turns per metre, and phase at the origin, turns, at `scene.time_s`.
-    pub(super) fn at_time_of(&self, scene: &Scene) -> (DVec2, f64) {
-        let depth_m = match (scene.water.dispersion, &scene.floor) {
-            (Dispersion::FiniteDepth, Some(floor)) => floor.depth_m,
-            _ => f64::INFINITY,
-        };
-        let k_per_m = TAU / self.wavelength_m;
-        let turns_per_s = match self.period_s {
-            Some(period_s) => 1.0 / period_s,
-            None => dispersion::angular_frequency(k_per_m, depth_m) / TAU,
-        };
-        let (sin_d, cos_d) = sin_cos_turns(self.direction_deg / 360.0);
-        let phase_turns = reduce_turns(
-            reduce_turns(self.phase_deg / 360.0) - reduce_turns(turns_per_s * scene.time_s),
-        );
-        (DVec2::new(cos_d, sin_d) / self.wavelength_m, phase_turns)
-    }
+/// Spatial frequency, turns per metre, and phase at the origin, turns, at `scene.time_s`, of a wave that runs without changing its shape.
+/// Without a period it has that of the dispersion relation.
+pub(super) fn running(
+    scene: &Scene,
+    wavelength_m: f64,
+    direction_deg: f64,
+    phase_deg: f64,
+    period_s: Option<f64>,
+) -> (DVec2, f64) {
+    let depth_m = match (scene.water.dispersion, &scene.floor) {
+        (Dispersion::FiniteDepth, Some(floor)) => floor.depth_m,
+        _ => f64::INFINITY,
+    };
+    let k_per_m = TAU / wavelength_m;
+    let turns_per_s = match period_s {
+        Some(period_s) => 1.0 / period_s,
+        None => dispersion::angular_frequency(k_per_m, depth_m) / TAU,
+    };
+    let (sin_d, cos_d) = sin_cos_turns(direction_deg / 360.0);
+    let phase_turns =
+        reduce_turns(reduce_turns(phase_deg / 360.0) - reduce_turns(turns_per_s * scene.time_s));
+    (DVec2::new(cos_d, sin_d) / wavelength_m, phase_turns)
 }
 
 /// A sum of sines.
@@ -66,13 +62,13 @@ impl Sines {
         });
         let components = waves
             .map(|wave| {
-                let running = Running {
-                    wavelength_m: wave.wavelength_m,
-                    direction_deg: wave.direction_deg,
-                    phase_deg: wave.phase_deg,
-                    period_s: wave.period_s,
-                };
-                let (frequency_per_m, phase_turns) = running.at_time_of(scene);
+                let (frequency_per_m, phase_turns) = running(
+                    scene,
+                    wave.wavelength_m,
+                    wave.direction_deg,
+                    wave.phase_deg,
+                    wave.period_s,
+                );
                 Sine {
                     amplitude_m: wave.amplitude_m,
                     frequency_per_m,

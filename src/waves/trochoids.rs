@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::sines::{Running, reduce_turns};
+use super::sines::{reduce_turns, running};
 use super::surface::{Curvature, SurfacePoint};
 use crate::scene::{Scene, Wave};
 
@@ -81,13 +81,13 @@ impl Trochoids {
         });
         let components = waves
             .map(|wave| {
-                let running = Running {
-                    wavelength_m: wave.wavelength_m,
-                    direction_deg: wave.direction_deg,
-                    phase_deg: wave.phase_deg,
-                    period_s: wave.period_s,
-                };
-                let (frequency_per_m, phase_turns) = running.at_time_of(scene);
+                let (frequency_per_m, phase_turns) = running(
+                    scene,
+                    wave.wavelength_m,
+                    wave.direction_deg,
+                    wave.phase_deg,
+                    wave.period_s,
+                );
                 Trochoid {
                     amplitude_m: wave.amplitude_m,
                     steepness: wave.steepness_used(),
