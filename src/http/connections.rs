@@ -56,7 +56,7 @@ impl Default for ConnectionLimits {
     fn default() -> Self {
         Self {
             most: 1024,
-            idle: Duration::from_secs(60),
+            idle: Duration::from_secs(75),
         }
     }
 }

@@ -1,9 +1,7 @@
 //! The contract, generated from the routes.
 
-use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use utoipa::openapi::{RefOr, Schema};
 use utoipa::{OpenApi, ToSchema};
 
 use super::problem::Problem;
@@ -24,7 +22,7 @@ use crate::scene::{MethodChoice, Scene};
             A body may be in one encoding, `Content-Encoding: gzip` or `deflate`; `limits.max_body_bytes` applies to the decoded \
             body.\n\n\
             Browsers let pages of other origins use the service only if its operator allows the origin (CORS, `--cors-origin`).\n\n\
-            Connections without a request are closed after a time, or when others need the place. Clients should open a new one then.",
+            Connections without a whole request are closed after a time, or when others need the place. Clients should open a new one then.",
         license(name = "MIT or Apache 2.0", identifier = "MIT OR Apache-2.0")
     ),
     tags(
@@ -48,27 +46,8 @@ pub fn openapi() -> utoipa::openapi::OpenApi {
         // The scene module's own schema of `Method` is generic, because that module does not know the methods.
         let name = MethodChoice::name().into_owned();
         components.schemas.insert(name, methods::schema().into());
-        // The scene module describes scene files too, which may name OBJ files.
-        describe(&mut components.schemas, "Object", "mesh", MESH_OF_OBJECT);
     }
     contract
-}
-
-/// What a client of the service can give as the mesh of an object.
-const MESH_OF_OBJECT: &str = "Mesh id, `blake3:…`, from the answer of `POST /v1/meshes`.";
-
-/// Replaces the description of a field.
-fn describe(
-    schemas: &mut BTreeMap<String, RefOr<Schema>>,
-    schema: &str,
-    field: &str,
-    description: &str,
-) {
-    if let Some(RefOr::T(Schema::Object(schema))) = schemas.get_mut(schema)
-        && let Some(RefOr::T(Schema::Object(field))) = schema.properties.get_mut(field)
-    {
-        field.description = Some(description.to_owned());
-    }
 }
 
 /// The contract as YAML, as in `openapi.yaml`.

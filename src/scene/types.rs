@@ -185,7 +185,8 @@ pub struct Sky {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Object {
-    /// Mesh id (`blake3:…`) from `POST /v1/meshes`; in a scene file also the path of an OBJ file relative to the scene file.
+    // The command line puts the id in the place of a path before it reads the scene.
+    /// Mesh id, `blake3:…`, from the answer of `POST /v1/meshes`.
     pub mesh: String,
     /// Translation, m, −10⁸ … 10⁸. Default (0, 0, 0).
     #[serde(default)]

@@ -41,7 +41,7 @@ pub(super) struct Open {
     places: Arc<Semaphore>,
     watches: Mutex<BTreeMap<u64, Arc<Watch>>>,
     next: AtomicU64,
-    /// A connection has started to wait.
+    /// A connection has started to wait, or its request's body has paused.
     waits: Arc<Notify>,
 }
 
@@ -63,14 +63,15 @@ impl Open {
                 return place;
             }
             let evicted = self.evict_longest_waiting();
+            let next = self.next_pause();
             tokio::select! {
                 place = Arc::clone(&self.places).acquire_owned() => {
                     return place.expect("the semaphore is never closed");
                 }
                 // A connection that was evicted frees its place soon.
                 () = self.waits.notified(), if !evicted => {}
-                // A client whose body stops arriving starts to wait without a notice.
-                () = tokio::time::sleep(BODY_PAUSE / 4), if !evicted => {}
+                // A client whose body pauses for long enough starts to wait.
+                () = tokio::time::sleep_until(next.unwrap_or_else(Instant::now)), if !evicted && next.is_some() => {}
             }
         }
     }
@@ -85,6 +86,16 @@ impl Open {
         waiting.sort_by_key(|(since, _)| *since);
         // A request may arrive meanwhile; then it is the next one's turn.
         waiting.iter().any(|(_, watch)| watch.evict())
+    }
+
+    /// When the next connection starts to wait if nothing more of its request's body arrives.
+    fn next_pause(&self) -> Option<Instant> {
+        let watches = self.watches();
+        let awaited = watches.values().filter_map(|watch| match *watch.phase() {
+            Phase::Busy { awaited, .. } => Some(awaited? + BODY_PAUSE),
+            _ => None,
+        });
+        awaited.min()
     }
 
     /// A new connection, which waits.
@@ -208,6 +219,9 @@ impl Watch {
     /// The service needs more of the request's body than has arrived, or no longer does.
     pub(super) fn awaits_body(&self, awaits: bool) {
         if let Phase::Busy { awaited, .. } = &mut *self.phase() {
+            if awaits && awaited.is_none() {
+                self.waits.notify_one();
+            }
             *awaited = awaits.then(|| awaited.unwrap_or_else(Instant::now));
         }
     }
