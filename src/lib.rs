@@ -65,6 +65,7 @@
 //! | [`assets`] | files that scenes refer to by content id |
 //! | [`waves`] | the water's surface |
 //! | [`scene`] | what a request may contain: types, ranges, parsing, validation |
+//! | [`kept`] | computed results that may serve again, within a budget of bytes |
 //! | [`mesh`] | reading OBJ, repairs with a report, ray hierarchy |
 //! | [`graph`] | passes, slots, scopes and the planner's walk: generic, without water or wgpu calls |
 //! | [`gpu`] | device, kernels, buffers, timing; knows nothing of water |
@@ -88,6 +89,7 @@ pub mod gpu_queue;
 pub mod graph;
 pub mod http;
 pub mod image;
+pub mod kept;
 pub mod lab;
 pub mod log;
 pub mod mesh;

@@ -17,10 +17,11 @@ pub(crate) fn check(bytes: &[u8]) {
         Err(error) => return says_why(&error),
     };
     reads_back(&scene);
-    let resolved = match caustica::methods::resolve(scene, &Limits::default(), |_| Some(mesh())) {
-        Ok(resolved) => resolved,
-        Err(error) => return says_why(&error),
-    };
+    let resolved =
+        match caustica::methods::resolve(scene, &Limits::default(), |_: &str| Some(mesh())) {
+            Ok(resolved) => resolved,
+            Err(error) => return says_why(&error),
+        };
     let facts = match caustica::methods::facts(&resolved) {
         Ok(facts) => facts,
         Err(error) => return says_why(&error),

@@ -5,6 +5,7 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use crate::config::Limits;
 use crate::mesh::{Mesh, MeshError, MeshInfo, obj};
+use crate::scene::Assets;
 
 /// Meshes by content id, shared between threads, within a budget of bytes. Nothing is evicted: a mesh stays until it is removed,
 /// and a mesh that does not fit is refused.
@@ -114,5 +115,11 @@ impl MeshStore {
 
     fn write(&self) -> RwLockWriteGuard<'_, Held> {
         self.held.write().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Assets for &MeshStore {
+    fn mesh(&self, id: &str) -> Option<Arc<Mesh>> {
+        self.get(id)
     }
 }

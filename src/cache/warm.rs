@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
+use crate::kept::Kept;
 use crate::mesh::Mesh;
 use crate::scene::{ResolvedScene, Scene, SceneError};
 
@@ -82,6 +83,7 @@ impl WarmUp {
         Ok(ResolvedScene {
             scene,
             meshes: vec![Arc::clone(mesh)],
+            kept: Kept::default(),
         })
     }
 }

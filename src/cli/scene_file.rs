@@ -123,7 +123,7 @@ fn with_meshes(
         }
     }
     if issues.is_empty() {
-        let resolved = methods::resolve(scene, limits, |id| store.get(id))?;
+        let resolved = methods::resolve(scene, limits, &store)?;
         return Ok(SceneFile { resolved, notes });
     }
     let others = methods::validate(&scene, limits).err();

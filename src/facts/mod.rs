@@ -64,7 +64,7 @@ impl SceneFacts {
     pub fn of(resolved: &ResolvedScene, method: MethodFacts) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let origin_m = origin(resolved);
-        let surface = water::surface_around(scene, origin_m);
+        let surface = water::surface_around(resolved, origin_m);
         let mut quality = scene.quality.clone();
         let output = OutputFacts::of(scene, origin_m);
         if output.is_floor_map() {

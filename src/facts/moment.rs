@@ -11,7 +11,7 @@ impl SceneFacts {
     /// changes and the facts must be computed again.
     pub fn at_time_of(&self, resolved: &ResolvedScene) -> Option<Self> {
         let scene = &resolved.scene;
-        let surface = surface_around(scene, self.origin_m);
+        let surface = surface_around(resolved, self.origin_m);
         // Windows, dry objects, level maps and warnings depend on these bounds.
         if surface.bounds_change_with_time() {
             return None;

@@ -27,7 +27,7 @@ impl FromRequest<AppState> for SceneBody {
         // A scene may be as large as the body limit, so it is read on a blocking thread.
         run_blocking(move || {
             let scene = Scene::from_json(&body)?;
-            let resolved = methods::resolve(scene, state.limits(), |id| state.meshes().get(id))?;
+            let resolved = methods::resolve(scene, state.limits(), &state)?;
             Ok(Self(resolved))
         })
         .await

@@ -11,6 +11,9 @@ use super::metrics::Metrics;
 use crate::assets::MeshStore;
 use crate::config::{CorsOrigin, Limits, RenderConfig};
 use crate::gpu_queue::GpuQueue;
+use crate::kept::Kept;
+use crate::mesh::Mesh;
+use crate::scene::Assets;
 
 /// What the routes share; clones refer to the same state.
 #[derive(Clone, Debug)]
@@ -23,6 +26,7 @@ pub struct AppState {
 struct Inner {
     queue: GpuQueue,
     meshes: MeshStore,
+    kept: Kept,
     limits: Limits,
     render: RenderConfig,
     metrics: Metrics,
@@ -37,6 +41,7 @@ impl AppState {
             inner: Arc::new(Inner {
                 queue,
                 meshes: MeshStore::new(&limits),
+                kept: Kept::default(),
                 limits,
                 render,
                 metrics: Metrics::new(),
@@ -122,5 +127,15 @@ impl AppState {
             }),
             _ => Ok(()),
         }
+    }
+}
+
+impl Assets for &AppState {
+    fn mesh(&self, id: &str) -> Option<Arc<Mesh>> {
+        self.meshes().get(id)
+    }
+
+    fn kept(&self) -> Kept {
+        self.inner.kept.clone()
     }
 }

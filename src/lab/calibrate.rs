@@ -208,7 +208,7 @@ fn resolved<E: std::error::Error>(mut value: Value) -> Result<ResolvedScene, Mea
         object["mesh"] = json!(id);
     }
     let scene = Scene::from_value(value)?;
-    Ok(methods::resolve(scene, &limits, |id| store.get(id))?)
+    Ok(methods::resolve(scene, &limits, &store)?)
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

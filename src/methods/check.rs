@@ -1,16 +1,13 @@
 //! Validation of a scene's choice of method and dials against the list of methods.
 
-use std::sync::Arc;
-
 use super::{ALL, Method};
 use crate::config::Limits;
-use crate::mesh::Mesh;
 use crate::scene::names::meant;
 use crate::scene::overrides::METHOD;
 use crate::scene::parse::{one_of, quoted};
 use crate::scene::pointer::member;
 use crate::scene::{
-    self, DialValue, Issue, MethodChoice, Quality, ResolvedScene, Scene, SceneError,
+    self, Assets, DialValue, Issue, MethodChoice, Quality, ResolvedScene, Scene, SceneError,
 };
 
 /// Most findings about the dials of a method that are listed.
@@ -24,10 +21,10 @@ const MOST_ISSUES: usize = 20;
 pub fn resolve(
     scene: Scene,
     limits: &Limits,
-    lookup: impl Fn(&str) -> Option<Arc<Mesh>>,
+    assets: impl Assets,
 ) -> Result<ResolvedScene, SceneError> {
     let of_method = check(&scene.quality);
-    let mut resolved = joined(scene::resolve(scene, limits, lookup), of_method)?;
+    let mut resolved = joined(scene::resolve(scene, limits, assets), of_method)?;
     let quality = &mut resolved.scene.quality;
     quality.method = shortest(&quality.method);
     Ok(resolved)

@@ -172,7 +172,7 @@ fn key(resolved: &ResolvedScene, settings: &TruthSettings) -> String {
     }
     let scene = ResolvedScene {
         scene,
-        meshes: resolved.meshes.clone(),
+        ..resolved.clone()
     };
     let mut hasher = blake3::Hasher::new();
     // Lengths come first, so that two different inputs never give the same bytes.

@@ -145,10 +145,7 @@ fn small_scene(waves: &str) -> ResolvedScene {
         }}"#
     );
     let scene: Scene = Scene::from_json(json.as_bytes()).expect("the self-check's scene is valid");
-    ResolvedScene {
-        scene,
-        meshes: Vec::new(),
-    }
+    ResolvedScene::bare(scene)
 }
 
 /// Largest error of a formula's f32 twin over its domain.

@@ -34,6 +34,6 @@ pub mod waves;
 pub use dials::{Dial, DialKind, DialValue, DialWord, MethodChoice};
 pub use error::{Issue, IssueKind, SceneError};
 pub use quality::Quality;
-pub use resolve::{ResolvedScene, resolve};
+pub use resolve::{Assets, ResolvedScene, resolve};
 pub use types::*;
 pub use waves::*;

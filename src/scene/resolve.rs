@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::error::{Issue, IssueKind, SceneError};
 use super::types::Scene;
 use crate::config::Limits;
+use crate::kept::Kept;
 use crate::mesh::Mesh;
 
 /// A validated scene with the meshes of its objects: everything that a frame needs.
@@ -14,9 +15,37 @@ pub struct ResolvedScene {
     pub scene: Scene,
     /// The mesh of each object, in the order of `scene.objects`.
     pub meshes: Vec<Arc<Mesh>>,
+    /// What is computed from the scene and may serve again: for another frame, or other dials.
+    pub kept: Kept,
+}
+
+/// Where the data is that scenes refer to by content id. A function from ids to meshes is enough where nothing else is needed.
+pub trait Assets {
+    /// The mesh with this id.
+    fn mesh(&self, id: &str) -> Option<Arc<Mesh>>;
+
+    /// Where results are kept. By default nowhere beyond this scene.
+    fn kept(&self) -> Kept {
+        Kept::default()
+    }
+}
+
+impl<F: Fn(&str) -> Option<Arc<Mesh>>> Assets for F {
+    fn mesh(&self, id: &str) -> Option<Arc<Mesh>> {
+        self(id)
+    }
 }
 
 impl ResolvedScene {
+    /// A valid scene without objects, which refers to nothing.
+    pub fn bare(scene: Scene) -> Self {
+        Self {
+            scene,
+            meshes: Vec::new(),
+            kept: Kept::default(),
+        }
+    }
+
     /// The scene as JSON with every default written out; meshes are named by their content ids.
     pub fn canonical_json(&self) -> String {
         serde_json::to_string(&self.scene).expect("a scene always serialises")
@@ -40,7 +69,7 @@ impl ResolvedScene {
 pub fn resolve(
     scene: Scene,
     limits: &Limits,
-    lookup: impl Fn(&str) -> Option<Arc<Mesh>>,
+    assets: impl Assets,
 ) -> Result<ResolvedScene, SceneError> {
     let mut issues = scene
         .validate(limits)
@@ -48,7 +77,7 @@ pub fn resolve(
         .map_or_else(Vec::new, |error| error.issues);
     let mut meshes = Vec::with_capacity(scene.objects.len().min(limits.max_objects));
     for (index, object) in scene.objects.iter().take(limits.max_objects).enumerate() {
-        match lookup(&object.mesh) {
+        match assets.mesh(&object.mesh) {
             Some(mesh) => meshes.push(mesh),
             // `validate` has reported an empty id.
             None if object.mesh.is_empty() => {}
@@ -56,7 +85,11 @@ pub fn resolve(
         }
     }
     if issues.is_empty() {
-        Ok(ResolvedScene { scene, meshes })
+        Ok(ResolvedScene {
+            scene,
+            meshes,
+            kept: assets.kept(),
+        })
     } else {
         Err(SceneError { issues })
     }

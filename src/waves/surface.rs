@@ -10,8 +10,9 @@ use super::sines::Sines;
 use super::spline::Spline;
 use super::trochoids::Trochoids;
 use super::{ripples, sea};
+use crate::kept::Key;
 use crate::physics::refraction;
-use crate::scene::{Scene, Wave};
+use crate::scene::{ResolvedScene, Scene, Wave};
 
 /// Height and slope of the water at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,15 +83,57 @@ struct Grid {
     slope_lost: (usize, f64),
 }
 
+/// What is kept of water on a grid.
+#[derive(Debug)]
+struct KeptGrid {
+    spline: Spline,
+    shortest_wave_m: f64,
+    slope_lost: f64,
+    description: String,
+}
+
 impl Grid {
-    fn of((wave, heights): (usize, Heights)) -> Self {
+    /// The grid of the scene's wave `index`; `heights` computes it if it is not kept.
+    fn of(
+        resolved: &ResolvedScene,
+        index: usize,
+        refinement: u32,
+        heights: impl FnOnce(u32) -> Heights,
+    ) -> Self {
+        let kept = resolved
+            .kept
+            .get_or(key(&resolved.scene, index, refinement), || {
+                let heights = heights(refinement);
+                let grid = KeptGrid {
+                    shortest_wave_m: heights.shortest_wave_m,
+                    slope_lost: heights.slope_lost,
+                    description: heights.description.clone(),
+                    spline: heights.spline(),
+                };
+                let bytes = size_of_val(grid.spline.coefficients()) as u64;
+                (grid, bytes)
+            });
         Self {
-            slope_lost: (wave, heights.slope_lost),
-            shortest_wave_m: heights.shortest_wave_m,
-            description: heights.description.clone(),
-            spline: heights.spline(),
+            spline: kept.spline.clone(),
+            shortest_wave_m: kept.shortest_wave_m,
+            description: kept.description.clone(),
+            slope_lost: (index, kept.slope_lost),
         }
     }
+}
+
+/// Hash of all that the grid of the scene's wave `index` depends on.
+fn key(scene: &Scene, index: usize, refinement: u32) -> Key {
+    let sources = (
+        "water on a grid",
+        &scene.water.waves[index],
+        scene.water.dispersion,
+        scene.floor.as_ref().map(|floor| floor.depth_m.to_bits()),
+        scene.time_s.to_bits(),
+        refinement,
+    );
+    let text = serde_json::to_vec(&sources).expect("waves always serialise");
+    *blake3::hash(&text).as_bytes()
 }
 
 /// Most samples along a side of a refined grid.
@@ -102,31 +145,37 @@ fn within(most: u32, refinement: u32, samples: u32) -> u32 {
 }
 
 impl Surface {
-    /// The surface of `scene` at `scene.time_s`; the origin is that of the scene.
-    pub fn of(scene: &Scene) -> Self {
-        Self::refined(scene, 1)
+    /// The surface of a scene at its `time_s`; the origin is that of the scene. Water on a grid that was computed before is taken from
+    /// [`ResolvedScene::kept`].
+    pub fn of(resolved: &ResolvedScene) -> Self {
+        Self::refined(resolved, 1)
     }
 
     /// The same with `refinement` times as many samples along the sides of grids, so that their splines miss less of what they stand for;
     /// for references. Of a grid that would have more than 4096 samples along a side, the refinement is smaller.
-    pub fn refined(scene: &Scene, refinement: u32) -> Self {
+    pub fn refined(resolved: &ResolvedScene, refinement: u32) -> Self {
+        let scene = &resolved.scene;
         let waves = scene.water.waves.iter().enumerate();
         let grids = waves.filter_map(|(index, wave)| match wave {
             Wave::Sine(_) | Wave::Gerstner(_) => None,
             Wave::Spectrum(waves) => {
                 let refinement = within(MAX_REFINED, refinement, waves.samples);
-                Some((index, sea::heights(waves, scene, refinement)))
+                Some(Grid::of(resolved, index, refinement, |refinement| {
+                    sea::heights(waves, scene, refinement)
+                }))
             }
             Wave::Ripples(waves) => {
                 // Mirror images double the sides.
                 let refinement = within(MAX_REFINED, refinement, 2 * waves.samples);
-                Some((index, ripples::heights(waves, scene, refinement)))
+                Some(Grid::of(resolved, index, refinement, |refinement| {
+                    ripples::heights(waves, scene, refinement)
+                }))
             }
         });
         Self {
             sines: Sines::of(scene),
             trochoids: Trochoids::of(scene),
-            grids: grids.map(Grid::of).collect(),
+            grids: grids.collect(),
         }
     }
 

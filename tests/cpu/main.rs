@@ -26,6 +26,7 @@ mod image_exr;
 mod image_metadata;
 mod image_png;
 mod image_support;
+mod kept;
 mod lamps;
 mod level_map_cache;
 mod listen;
@@ -70,6 +71,8 @@ mod shader_constants;
 #[path = "../../examples/mutants/shader_plants.rs"]
 mod shader_plants;
 mod shaders;
+#[path = "../support/surfaces.rs"]
+mod surfaces;
 #[path = "../support/synthetic_study.rs"]
 mod synthetic_study;
 mod teapot;

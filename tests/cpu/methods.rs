@@ -260,7 +260,7 @@ fn all_findings_come_together() {
         "output": { "kind": "irradiance_map", "receiver": 0 }
     });
     let scene = Scene::from_value(scene).unwrap();
-    let error = methods::resolve(scene.clone(), &Limits::default(), |_| None).unwrap_err();
+    let error = methods::resolve(scene.clone(), &Limits::default(), |_: &str| None).unwrap_err();
     let of_method = ["/quality/method", "/quality/method/planes"];
     assert_eq!(
         pointers(&error.issues),
@@ -280,7 +280,7 @@ fn resolved(method: &Value) -> caustica::scene::ResolvedScene {
         "output": { "kind": "irradiance_map", "receiver": "floor" }
     });
     let scene = Scene::from_value(scene).unwrap();
-    methods::resolve(scene, &Limits::default(), |_| None).unwrap()
+    methods::resolve(scene, &Limits::default(), |_: &str| None).unwrap()
 }
 
 #[test]

@@ -171,7 +171,7 @@ fn scenes_that_cannot_be_rendered_cannot_be_prepared() {
         max_lights: 65,
         ..Limits::default()
     };
-    let resolved = resolve(scene.unwrap(), &limits, |_| None).unwrap();
+    let resolved = resolve(scene.unwrap(), &limits, |_: &str| None).unwrap();
     let refused = |result: Result<Prepared, SceneError>| result.unwrap_err().issues;
     let anew = refused(Prepared::new(moved(&resolved, 1.0)));
     assert_eq!(anew[0].pointer, "/lights");

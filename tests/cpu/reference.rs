@@ -9,6 +9,8 @@ use caustica::scene::{Light, Output, ResolvedScene, Scene, Sun, Wave};
 use caustica::waves::{Surface, normal};
 use glam::DVec2;
 
+use crate::surfaces::surface_of;
+
 use crate::reference_closed_form::single_sine;
 use crate::truths;
 
@@ -16,10 +18,7 @@ pub(crate) const SINE_POOL: &str = include_str!("../../scenes/sine_pool.json");
 pub(crate) const FLAT: &str = include_str!("../../scenes/flat.json");
 
 pub(crate) fn resolved(json: &str) -> ResolvedScene {
-    ResolvedScene {
-        scene: serde_json::from_str(json).unwrap(),
-        meshes: Vec::new(),
-    }
+    ResolvedScene::bare(serde_json::from_str(json).unwrap())
 }
 
 pub(crate) fn sun_mut(scene: &mut Scene) -> &mut Sun {
@@ -75,7 +74,7 @@ pub(crate) fn assert_energy_closes(map: &ReferenceMap) {
 
 /// The plainest count there is: random rays, one by one, with the functions of `physics`.
 fn plain_count(scene: &Scene, half_m: f64, texels: usize, rays: u32) -> Vec<f64> {
-    let surface = Surface::of(scene);
+    let surface = surface_of(scene);
     let Light::Sun(sun) = &scene.lights[0] else {
         panic!("a sun");
     };
@@ -289,7 +288,7 @@ fn a_map_far_away_is_as_good_as_one_at_the_origin() {
 
 #[test]
 fn the_window_holds_all_light_that_matters() {
-    let surface = Surface::of(&resolved(SINE_POOL).scene);
+    let surface = Surface::of(&resolved(SINE_POOL));
     for (elevation_deg, azimuth_deg) in [(90.0, 0.0), (60.0, 180.0), (25.0, 70.0), (4.0, -130.0)] {
         let l = direction_to_light(f64::to_radians(elevation_deg), f64::to_radians(azimuth_deg));
         let window = light_window(&surface, l, 1.333, 2.0, DVec2::NEG_ONE, DVec2::ONE);

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::surfaces::{refined_surface, surface_of};
+
 use caustica::physics::constants::GRAVITY_M_PER_S2;
 use caustica::physics::dispersion::{angular_frequency, angular_frequency_with_surface_tension};
 use caustica::physics::oscillator::{Elapsed, Oscillator};
@@ -44,7 +46,7 @@ fn scene(ripples: &Ripples, depth_m: Option<f64>, time_s: f64) -> Scene {
 }
 
 fn surface(ripples: &Ripples, depth_m: Option<f64>, time_s: f64) -> Surface {
-    Surface::of(&scene(ripples, depth_m, time_s))
+    surface_of(&scene(ripples, depth_m, time_s))
 }
 
 fn sides_m(ripples: &Ripples) -> [f64; 2] {
@@ -371,7 +373,7 @@ fn a_refined_basin_has_the_same_modes() {
         let mut ripples = basin([1.5, 0.9], 40, &some_drops());
         ripples.walls = walls;
         let scene = scene(&ripples, None, 1.3);
-        let (coarse, thrice) = (Surface::of(&scene), Surface::refined(&scene, 3));
+        let (coarse, thrice) = (surface_of(&scene), refined_surface(&scene, 3));
         // Every third sample of the finer grid is one of the coarse one.
         let found = sampled(&ripples, &thrice, [40, 24]);
         all_near(&found, &sampled(&ripples, &coarse, [40, 24]), 1e-13);
@@ -380,7 +382,7 @@ fn a_refined_basin_has_the_same_modes() {
     // Between samples the spline of well resolved drops is as good.
     let ripples = basin([1.5, 0.9], 256, &[drop([0.1, 0.6], 0.12, 1.0, 0.0)]);
     let scene = scene(&ripples, None, 1.3);
-    let (coarse, twice) = (Surface::of(&scene), Surface::refined(&scene, 2));
+    let (coarse, twice) = (surface_of(&scene), refined_surface(&scene, 2));
     for i in 0..400 {
         let p = f64::from(i) * DVec2::new(0.618_034, 0.754_878);
         let difference_m = coarse.at(p.x, p.y).height_m - twice.at(p.x, p.y).height_m;

@@ -28,7 +28,7 @@ fn mesh(id: &str) -> Arc<Mesh> {
 
 fn resolved(value: Value) -> Result<ResolvedScene, SceneError> {
     let scene = Scene::from_value(value).unwrap();
-    caustica::methods::resolve(scene, &Limits::default(), |id| {
+    caustica::methods::resolve(scene, &Limits::default(), |id: &str| {
         id.starts_with("blake3:0").then(|| mesh(id))
     })
 }

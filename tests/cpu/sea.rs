@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::surfaces::{refined_surface, surface_of};
+
 use caustica::physics::dispersion::{angular_frequency, with_surface_tension};
 use caustica::physics::sea::{
     Elfouhaily, FrequencySpectrum, depth_factor, phillips, phillips_peak,
@@ -38,7 +40,7 @@ fn waves_of(scene: &Scene) -> &SpectrumWaves {
 
 /// Heights at `count` × `count` points of the tile, row by row along x.
 fn heights(scene: &Scene, count: usize) -> Vec<f64> {
-    grid(&Surface::of(scene), waves_of(scene).tile_m, count)
+    grid(&surface_of(scene), waves_of(scene).tile_m, count)
 }
 
 fn grid(surface: &Surface, tile_m: f64, count: usize) -> Vec<f64> {
@@ -354,9 +356,9 @@ fn seeds_give_different_seas() {
 #[test]
 fn refinement_interpolates_the_same_waves() {
     let scene = scene_with(json!({ "spreading": "hasselmann" }), json!({ "time_s": 3 }));
-    let coarse = grid(&Surface::refined(&scene, 1), 50.0, 64);
+    let coarse = grid(&refined_surface(&scene, 1), 50.0, 64);
     for refinement in [2, 3, 4] {
-        let fine = grid(&Surface::refined(&scene, refinement), 50.0, 64);
+        let fine = grid(&refined_surface(&scene, refinement), 50.0, 64);
         assert!(largest_difference(&coarse, &fine) < 1e-12, "{refinement}");
     }
 }
@@ -384,7 +386,7 @@ fn a_loop_repeats_to_the_bit() {
 #[test]
 fn the_tile_repeats() {
     let scene = scene_of(json!({}));
-    let surface = Surface::of(&scene);
+    let surface = surface_of(&scene);
     for (x, z) in [(0.1, 0.2), (17.0, 48.3), (-3.3, 21.9)] {
         let here = surface.at(x, z);
         for (i, j) in [(1.0, 0.0), (0.0, -1.0), (-7.0, 12.0)] {
@@ -470,7 +472,7 @@ fn spreadings_turn_with_the_wind() {
             let scene = scene_of(
                 json!({ "spreading": spreading, "wind_direction_deg": direction, "seed": seed }),
             );
-            let surface = Surface::of(&scene);
+            let surface = surface_of(&scene);
             for point in 0..1024 {
                 let (x, z) = (
                     f64::from(point % 32) * 1.5625,
@@ -494,10 +496,10 @@ fn spreadings_turn_with_the_wind() {
 
 #[test]
 fn the_band_and_the_name_are_reported() {
-    let surface = Surface::of(&scene_of(json!({ "min_wavelength_m": 5 })));
+    let surface = surface_of(&scene_of(json!({ "min_wavelength_m": 5 })));
     assert_eq!(surface.shortest_wave_m(), 5.0);
     assert_eq!(surface.description(), "water with a JONSWAP sea");
-    assert!((Surface::of(&scene_of(json!({}))).shortest_wave_m() - 3.125).abs() < 1e-12);
+    assert!((surface_of(&scene_of(json!({}))).shortest_wave_m() - 3.125).abs() < 1e-12);
     for flat in [
         json!({ "wind_speed_m_s": 0 }),
         json!({ "wind_speed_m_s": 0, "significant_height_m": 2 }),
@@ -507,7 +509,7 @@ fn the_band_and_the_name_are_reported() {
         // Waves of 5 … 10 km under a breeze.
         json!({ "wind_speed_m_s": 0.5, "tile_m": 1e4, "min_wavelength_m": 5e3, "model": "pierson_moskowitz", "significant_height_m": 2 }),
     ] {
-        let surface = Surface::of(&scene_of(flat.clone()));
+        let surface = surface_of(&scene_of(flat.clone()));
         assert_eq!(surface.shortest_wave_m(), f64::INFINITY, "{flat}");
         assert_eq!(surface.max_height_m(), 0.0);
         assert_eq!(surface.at(3.0, 4.0).height_m, 0.0);
@@ -541,7 +543,7 @@ fn extreme_seas_are_finite() {
                     });
                     let floor = json!({ "time_s": time_s, "floor": { "depth_m": depth_m, "size_m": [1, 1] } });
                     let scene = scene_with(fields.clone(), floor);
-                    let surface = Surface::of(&scene);
+                    let surface = surface_of(&scene);
                     let bounds = [
                         surface.max_height_m(),
                         surface.max_slope(),
@@ -570,7 +572,7 @@ fn what_the_samples_miss_is_told() {
             }] }
         }))
         .unwrap();
-        Surface::of(&scene).slope_lost().collect::<Vec<_>>()
+        surface_of(&scene).slope_lost().collect::<Vec<_>>()
     };
     let [(wave, four)] = lost(1.0)[..] else {
         panic!("one grid")

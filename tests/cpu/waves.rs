@@ -5,6 +5,8 @@ use caustica::scene::{Scene, SineWave, Wave};
 use caustica::waves::{ROW_POINTS, RowPoints, Surface, SurfacePoint, normal};
 use glam::DVec2;
 
+use crate::surfaces::surface_of;
+
 fn scene(time_s: f64, period: &str) -> Scene {
     serde_json::from_str(&format!(
         r#"{{
@@ -42,7 +44,7 @@ fn points() -> impl Iterator<Item = DVec2> {
 
 #[test]
 fn slope_is_the_derivative_of_height() {
-    let surface = Surface::of(&scene(3.7, ""));
+    let surface = surface_of(&scene(3.7, ""));
     let h = 1e-5;
     for p in points() {
         let point = surface.at(p.x, p.y);
@@ -61,7 +63,7 @@ fn slope_is_the_derivative_of_height() {
 
 #[test]
 fn the_normal_is_across_both_tangents() {
-    let surface = Surface::of(&scene(0.0, ""));
+    let surface = surface_of(&scene(0.0, ""));
     for p in points() {
         let point = surface.at(p.x, p.y);
         let n = normal(point);
@@ -73,7 +75,7 @@ fn the_normal_is_across_both_tangents() {
 
 #[test]
 fn a_recentred_surface_is_the_shifted_one() {
-    let surface = Surface::of(&scene(1.3, ""));
+    let surface = surface_of(&scene(1.3, ""));
     for origin in [
         DVec2::new(0.3, -7.1),
         DVec2::new(-1234.5, 4321.25),
@@ -100,10 +102,10 @@ fn a_recentred_surface_is_the_shifted_one() {
 fn whole_periods_change_nothing_even_after_a_million_seconds() {
     let period = r#", "period_s": 2.5"#;
     let (start, late) = (
-        Surface::of(&scene(0.0, period)),
-        Surface::of(&scene(1e6, period)),
+        surface_of(&scene(0.0, period)),
+        surface_of(&scene(1e6, period)),
     );
-    let half = Surface::of(&scene(1e6 + 1.25, period));
+    let half = surface_of(&scene(1e6 + 1.25, period));
     for p in points() {
         let (a, b, c) = (start.at(p.x, p.y), late.at(p.x, p.y), half.at(p.x, p.y));
         assert!((a.height_m - b.height_m).abs() < 1e-10, "{p}");
@@ -124,7 +126,7 @@ fn waves_run_where_they_point() {
         ))
         .unwrap()
     };
-    let (start, later) = (Surface::of(&scene(0.0)), Surface::of(&scene(2.0)));
+    let (start, later) = (surface_of(&scene(0.0)), surface_of(&scene(2.0)));
     for p in points() {
         let moved = later.at(p.x, p.y + 1.0).height_m;
         assert!((start.at(p.x, p.y).height_m - moved).abs() < 1e-13);
@@ -146,7 +148,7 @@ fn the_period_follows_from_the_depth() {
         let alone = |scene: &Scene| {
             let mut scene = scene.clone();
             scene.water.waves = vec![Wave::Sine(wave.clone())];
-            phase_turns(&Surface::of(&scene), wave)
+            phase_turns(&surface_of(&scene), wave)
         };
         let k = std::f64::consts::TAU / wave.wavelength_m;
         let turns = angular_frequency(k, 2.0) * 0.4 / std::f64::consts::TAU;
@@ -160,7 +162,7 @@ fn the_period_follows_from_the_depth() {
 
 #[test]
 fn rows_and_curved_points_are_those_of_single_points() {
-    let surface = Surface::of(&scene(5.1, ""));
+    let surface = surface_of(&scene(5.1, ""));
     let near = |a: SurfacePoint, b: SurfacePoint| {
         (a.height_m - b.height_m).abs() < 1e-14 && (a.slope - b.slope).length() < 1e-13
     };
@@ -182,7 +184,7 @@ fn rows_and_curved_points_are_those_of_single_points() {
 
 #[test]
 fn curvature_is_the_derivative_of_slope_and_keeps_to_its_bounds() {
-    let surface = Surface::of(&scene(2.2, ""));
+    let surface = surface_of(&scene(2.2, ""));
     let h = 1e-5;
     let (mut most_bend, mut most_twist) = (0.0f64, 0.0f64);
     for p in points() {
@@ -221,7 +223,7 @@ fn curvature_is_the_derivative_of_slope_and_keeps_to_its_bounds() {
 #[test]
 fn the_gpu_gets_the_waves_of_its_shaders() {
     let scene = scene(0.0, r#", "period_s": 2.5"#);
-    let surface = Surface::of(&scene);
+    let surface = surface_of(&scene);
     let elements = surface.gpu_elements();
     assert_eq!(elements.len(), 1 + scene.water.waves.len());
     assert_eq!(elements.len(), surface.gpu_element_count());
@@ -242,15 +244,15 @@ fn the_gpu_gets_the_waves_of_its_shaders() {
 
 #[test]
 fn water_is_described_by_its_kind() {
-    let flat = Surface::of(&serde_json::from_str("{}").unwrap());
+    let flat = surface_of(&serde_json::from_str("{}").unwrap());
     assert_eq!(flat.description(), "flat water");
-    let waves = Surface::of(&scene(0.0, ""));
+    let waves = surface_of(&scene(0.0, ""));
     assert_eq!(waves.description(), "water with 3 wave components");
 }
 
 #[test]
 fn bounds_hold() {
-    let surface = Surface::of(&scene(0.9, ""));
+    let surface = surface_of(&scene(0.9, ""));
     let rim = surface.rim_slopes(64);
     assert_eq!(rim.len(), 64);
     let mut highest = 0.0f64;
@@ -273,7 +275,7 @@ fn bounds_hold() {
 
 #[test]
 fn flat_water_has_no_rim() {
-    let surface = Surface::of(&serde_json::from_str("{}").unwrap());
+    let surface = surface_of(&serde_json::from_str("{}").unwrap());
     assert!(surface.rim_slopes(64).is_empty());
     assert_eq!(surface.max_height_m(), 0.0);
     assert_eq!(surface.max_slope(), 0.0);
@@ -294,7 +296,7 @@ fn gerstner_waves_are_trochoids() {
         let fields = format!(
             r#""steepness": {steepness}, "direction_deg": {direction_deg}, "phase_deg": 30"#
         );
-        let surface = Surface::of(&gerstner(&fields));
+        let surface = surface_of(&gerstner(&fields));
         let (amplitude_m, k) = (0.05, std::f64::consts::TAU / 1.2);
         let along = DVec2::from_angle(f64::to_radians(direction_deg));
         let mut mean = 0.0;
@@ -320,8 +322,8 @@ fn gerstner_waves_are_trochoids() {
     }
     // Without a steepness, points move on circles: s = k A. With 0 it is a sine.
     let (plain, sine) = (
-        Surface::of(&gerstner(r#""phase_deg": 0"#)),
-        Surface::of(&gerstner(r#""steepness": 0"#)),
+        surface_of(&gerstner(r#""phase_deg": 0"#)),
+        surface_of(&gerstner(r#""steepness": 0"#)),
     );
     let k_a = std::f64::consts::TAU * 0.05 / 1.2;
     assert!((plain.at(0.0, 0.0).height_m - 0.05 * (1.0 + 0.5 * k_a)).abs() < 1e-12);
@@ -335,7 +337,7 @@ fn gerstner_waves_run_and_keep_to_their_bounds() {
     let at = |time_s: f64| {
         let mut scene = gerstner(r#""steepness": 0.9, "period_s": 2, "direction_deg": 20"#);
         scene.time_s = time_s;
-        Surface::of(&scene)
+        surface_of(&scene)
     };
     let (start, quarter, later) = (at(0.0), at(0.5), at(1e9 + 0.5));
     let along = DVec2::from_angle(20_f64.to_radians()) * 0.3;

@@ -177,7 +177,7 @@ async fn a_mesh_that_is_deleted_while_its_scene_is_prepared_goes_after_the_rende
     service.assert_whole().await;
     service.until_depth(1).await;
     let scene = Scene::from_value(scenes::small()).unwrap();
-    let resolved = resolve(scene, &Limits::default(), |_| None).unwrap();
+    let resolved = resolve(scene, &Limits::default(), |_: &str| None).unwrap();
     let prepared = Prepared::new(resolved).unwrap();
     queue.render(place, prepared).await.unwrap();
     service.assert_whole().await;

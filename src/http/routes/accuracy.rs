@@ -188,8 +188,7 @@ fn read(body: &Bytes, state: &AppState) -> Result<(ResolvedScene, SweepSettings,
             )),
         }
     }
-    let find = |id: &str| state.meshes().get(id);
-    let resolved = methods::resolve(request.scene, state.limits(), find);
+    let resolved = methods::resolve(request.scene, state.limits(), state);
     match resolved {
         Ok(resolved) if issues.is_empty() => {
             if dials.is_empty() {

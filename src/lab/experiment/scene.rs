@@ -52,7 +52,7 @@ pub fn scene(name: &str, water_cells: u32, texels: u32) -> Result<ResolvedScene,
     });
     let refused = |error: crate::scene::SceneError| ExperimentError::Scene(error.to_string());
     let scene = Scene::from_value(value).map_err(refused)?;
-    methods::resolve(scene, &Limits::default(), |id| {
+    methods::resolve(scene, &Limits::default(), |id: &str| {
         (id == mesh.id).then(|| mesh.clone())
     })
     .map_err(refused)

@@ -192,7 +192,7 @@ pub fn with_dials(
     scene.quality.method = methods::shortest(&scene.quality.method);
     let scene = ResolvedScene {
         scene,
-        meshes: resolved.meshes.clone(),
+        ..resolved.clone()
     };
     Ok(match methods::reason_against(&scene)? {
         None => Setting::Scene(Box::new(scene)),
