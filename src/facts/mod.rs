@@ -7,11 +7,13 @@
 //!   the receiver of a map;
 //! - `placement`: objects and the boxes of their level maps; `detail`: texels of those maps, by the object's size in the picture;
 //!   `source`: where light comes from; `window`, `lamp_window`: the water through which light reaches the receivers;
-//! - `warnings`: what is left out or sub-sampled; `unfollowed`, `blocked`: how much light that concerns;
+//! - `warnings`: what is left out or sub-sampled; `height_fields`: the same of water that users bring; `unfollowed`, `blocked`: how much
+//!   light that concerns;
 //! - `moment`: which facts change with time.
 
 mod blocked;
 mod detail;
+mod height_fields;
 mod lamp_window;
 pub mod lights;
 pub mod method;

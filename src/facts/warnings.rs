@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::blocked::{self, Blocked};
+use super::height_fields;
 use super::source::Source;
 use super::unfollowed;
 use super::window::Rect;
@@ -32,14 +33,18 @@ pub const WAVES_UNDERSAMPLED: &str = "waves_undersampled";
 /// Share of the mean square slope that may be missing without a warning.
 const MAX_SLOPE_LOST: f64 = 0.01;
 
-fn warning(code: &str, message: impl Into<String>, pointer: impl Into<String>) -> Warning {
+pub(super) fn warning(
+    code: &str,
+    message: impl Into<String>,
+    pointer: impl Into<String>,
+) -> Warning {
     Warning {
         pointer: Some(pointer.into()),
         ..Warning::new(code, message)
     }
 }
 
-fn with_flux(warning: Warning, flux_w: [f64; 3]) -> Warning {
+pub(super) fn with_flux(warning: Warning, flux_w: [f64; 3]) -> Warning {
     Warning {
         flux_w: Some(flux_w),
         ..warning
@@ -59,6 +64,7 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     all.extend(coarse_cells(facts));
     all.extend(smoothed_waves(facts));
     all.extend(seas_without_waves(facts, &resolved.scene));
+    all.extend(height_fields::warnings(facts));
     let mut of_lights = Vec::new();
     for set in &facts.lights.beam_sets {
         of_lights.extend(from_below(set));

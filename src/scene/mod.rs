@@ -1,11 +1,11 @@
 //! The scene: the JSON that a request consists of.
 //!
-//! - `types`, `waves`, `quality`, `dials`: the fields (`dials`: the choice of a method, and the dials that only this method has);
+//! - `types`, `waves`, `height_field`, `quality`, `dials`: the fields (`dials`: the choice of a method, and the dials that only this method has);
 //! - `json` reads text, `strict` reads values, `parse` puts the two together;
 //! - `ranges`, `validate`, `validate_output`: which values are refused;
 //! - `overrides`: single fields replaced from outside, as by command-line flags;
 //! - `projection`: a camera as matrices;
-//! - `resolve`: mesh ids become meshes.
+//! - `resolve`: mesh ids become meshes; `field_frames`: those of files of heights become frames.
 //!
 //! The list of methods is known to `methods` only, which therefore has a `resolve` of its own: the CLI, the HTTP service and the
 //! tests call that one.
@@ -15,7 +15,9 @@
 
 pub mod dials;
 pub mod error;
+mod field_frames;
 mod findings;
+pub mod height_field;
 pub mod json;
 pub mod names;
 pub mod overrides;
@@ -33,6 +35,10 @@ pub mod waves;
 
 pub use dials::{Dial, DialKind, DialValue, DialWord, MethodChoice};
 pub use error::{Issue, IssueKind, SceneError};
+pub use field_frames::FieldFrames;
+pub use height_field::{
+    AfterLast, FieldEdges, FieldHolds, FirstRow, HeightField, RowAxis, SampleDistance,
+};
 pub use quality::Quality;
 pub use resolve::{Assets, ResolvedScene, resolve};
 pub use types::*;

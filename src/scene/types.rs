@@ -725,6 +725,7 @@ kinds! {
     GerstnerKind = "gerstner",
     SpectrumKind = "spectrum",
     RipplesKind = "ripples",
+    HeightFieldKind = "height_field",
     SunKind = "sun",
     PointKind = "point",
     SkyKind = "sky",

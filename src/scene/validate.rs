@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::error::SceneError;
 use super::findings::Findings;
+use super::height_field;
 use super::parse::ROTATION_LENGTH_TOLERANCE;
 use super::quality::Quality;
 use super::ranges::{self, number};
@@ -111,6 +112,7 @@ fn water(findings: &mut Findings, water: &Water, limits: &Limits) {
             Wave::Gerstner(wave) => gerstner(findings, wave, &at),
             Wave::Spectrum(waves) => spectrum(findings, waves, &at),
             Wave::Ripples(waves) => ripples(findings, waves, &at),
+            Wave::HeightField(waves) => height_field::check(findings, waves, &at),
         }
     }
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::height_field::HeightField;
 use super::parse::{inner, integer, tagged};
 use super::ranges::{BasinSamples, Seed, SpectrumSamples};
 use super::types::{GerstnerKind, RipplesKind, SineKind, SpectrumKind};
@@ -19,15 +20,18 @@ pub enum Wave {
     Spectrum(SpectrumWaves),
     /// `kind = "ripples"`.
     Ripples(Ripples),
+    /// `kind = "height_field"`.
+    HeightField(Box<HeightField>),
 }
 
 impl<'de> Deserialize<'de> for Wave {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let kinds = ["sine", "gerstner", "spectrum", "ripples"];
+        let kinds = ["sine", "gerstner", "spectrum", "ripples", "height_field"];
         tagged(deserializer, None, &kinds, |kind, value| match kind {
             "gerstner" => inner(value).map(Self::Gerstner),
             "spectrum" => inner(value).map(Self::Spectrum),
             "ripples" => inner(value).map(Self::Ripples),
+            "height_field" => inner(value).map(Self::HeightField),
             _ => inner(value).map(Self::Sine),
         })
     }
@@ -45,10 +49,10 @@ impl Wave {
     }
 
     /// Samples of the grid on which the waves are computed; 0 for waves with a formula. A basin with reflecting walls has its mirror images
-    /// on the grid.
+    /// on the grid. Those of a height field are in its files; see [`super::resolve`].
     pub fn grid_samples(&self) -> u64 {
         match self {
-            Self::Sine(_) | Self::Gerstner(_) => 0,
+            Self::Sine(_) | Self::Gerstner(_) | Self::HeightField(_) => 0,
             Self::Spectrum(waves) => u64::from(waves.samples).saturating_pow(2),
             Self::Ripples(waves) => match waves.walls {
                 Walls::Periodic => u64::from(waves.samples).saturating_pow(2),

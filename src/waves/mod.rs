@@ -4,6 +4,7 @@
 //! - `row`: the points of a row, evaluated a block at a time;
 //! - `sines`, `trochoids`: waves with a formula;
 //! - `sea`, `ripples`: water that is computed on a grid (`grid`), and `spline`, the surface through the samples;
+//! - `height_field`: water from samples that a user brings, and `gradient`, heights from slopes;
 //! - `spectrum`, `chance`, `clock`, `fourier`: what a sea is made of: variances, random numbers, phases, and the sum of its waves;
 //! - `harmonics`: the modes of a basin, added up on a grid.
 //!
@@ -13,8 +14,10 @@
 mod chance;
 mod clock;
 mod fourier;
+mod gradient;
 mod grid;
 mod harmonics;
+mod height_field;
 mod ripples;
 mod row;
 mod sea;
@@ -24,6 +27,7 @@ mod spline;
 mod surface;
 mod trochoids;
 
+pub use height_field::{FieldNotes, Rim};
 pub use ripples::slope_lost;
 pub use row::{ROW_POINTS, RowPoints, Rows};
 pub use surface::{Curvature, Surface, SurfacePoint, normal};

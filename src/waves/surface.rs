@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::grid::Heights;
+use super::height_field::{self, FieldNotes, Moment};
 use super::row::Rows;
 use super::sines::Sines;
 use super::spline::Spline;
@@ -12,7 +13,7 @@ use super::trochoids::Trochoids;
 use super::{ripples, sea};
 use crate::kept::Key;
 use crate::physics::refraction;
-use crate::scene::{ResolvedScene, Scene, Wave};
+use crate::scene::{HeightField, ResolvedScene, Scene, Wave};
 
 /// Height and slope of the water at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +82,8 @@ struct Grid {
     description: String,
     /// Index into the scene's waves, and the share of its mean square slope that the spline misses.
     slope_lost: (usize, f64),
+    /// Of a height field.
+    notes: Option<FieldNotes>,
 }
 
 /// What is kept of water on a grid.
@@ -90,6 +93,22 @@ struct KeptGrid {
     shortest_wave_m: f64,
     slope_lost: f64,
     description: String,
+    notes: Option<FieldNotes>,
+}
+
+impl KeptGrid {
+    /// With the number of its bytes.
+    fn of(heights: Heights, notes: Option<FieldNotes>) -> (Self, u64) {
+        let grid = Self {
+            shortest_wave_m: heights.shortest_wave_m,
+            slope_lost: heights.slope_lost,
+            description: heights.description.clone(),
+            spline: heights.spline(),
+            notes,
+        };
+        let bytes = size_of_val(grid.spline.coefficients()) as u64;
+        (grid, bytes)
+    }
 }
 
 impl Grid {
@@ -103,21 +122,35 @@ impl Grid {
         let kept = resolved
             .kept
             .get_or(key(&resolved.scene, index, refinement), || {
-                let heights = heights(refinement);
-                let grid = KeptGrid {
-                    shortest_wave_m: heights.shortest_wave_m,
-                    slope_lost: heights.slope_lost,
-                    description: heights.description.clone(),
-                    spline: heights.spline(),
-                };
-                let bytes = size_of_val(grid.spline.coefficients()) as u64;
-                (grid, bytes)
+                KeptGrid::of(heights(refinement), None)
             });
+        Self::kept(index, &kept)
+    }
+
+    /// The grid of the scene's wave `index`, a height field.
+    fn of_field(resolved: &ResolvedScene, index: usize, waves: &HeightField) -> Self {
+        let scene = &resolved.scene;
+        let frames = resolved
+            .fields
+            .get(&index)
+            .expect("a resolved scene has the files of its height fields");
+        let moment = Moment::at(waves, frames.count(), scene.time_s);
+        // The ids of the files are among the fields. Only the moment depends on time.
+        let sources = ("height field", waves, moment.bits());
+        let kept = resolved.kept.get_or(hash(&sources), || {
+            let (heights, notes) = height_field::heights(waves, frames, &moment);
+            KeptGrid::of(heights, Some(notes))
+        });
+        Self::kept(index, &kept)
+    }
+
+    fn kept(index: usize, kept: &KeptGrid) -> Self {
         Self {
             spline: kept.spline.clone(),
             shortest_wave_m: kept.shortest_wave_m,
             description: kept.description.clone(),
             slope_lost: (index, kept.slope_lost),
+            notes: kept.notes,
         }
     }
 }
@@ -132,7 +165,11 @@ fn key(scene: &Scene, index: usize, refinement: u32) -> Key {
         scene.time_s.to_bits(),
         refinement,
     );
-    let text = serde_json::to_vec(&sources).expect("waves always serialise");
+    hash(&sources)
+}
+
+fn hash(sources: &impl serde::Serialize) -> Key {
+    let text = serde_json::to_vec(sources).expect("waves always serialise");
     *blake3::hash(&text).as_bytes()
 }
 
@@ -152,7 +189,7 @@ impl Surface {
     }
 
     /// The same with `refinement` times as many samples along the sides of grids, so that their splines miss less of what they stand for;
-    /// for references. Of a grid that would have more than 4096 samples along a side, the refinement is smaller.
+    /// for references. The spline of a height field is its surface, which is not refined. Of a grid that would have more than 4096 samples along a side, the refinement is smaller.
     pub fn refined(resolved: &ResolvedScene, refinement: u32) -> Self {
         let scene = &resolved.scene;
         let waves = scene.water.waves.iter().enumerate();
@@ -171,6 +208,7 @@ impl Surface {
                     ripples::heights(waves, scene, refinement)
                 }))
             }
+            Wave::HeightField(waves) => Some(Grid::of_field(resolved, index, waves)),
         });
         Self {
             sines: Sines::of(scene),
@@ -183,6 +221,7 @@ impl Surface {
     pub fn recentred(&self, origin_m: DVec2) -> Self {
         let recentred = |grid: &Grid| Grid {
             spline: grid.spline.recentred(origin_m),
+            notes: grid.notes.map(|notes| notes.recentred(origin_m)),
             ..grid.clone()
         };
         Self {
@@ -304,6 +343,12 @@ impl Surface {
     /// that the surface through the samples misses.
     pub fn slope_lost(&self) -> impl Iterator<Item = (usize, f64)> {
         self.grids.iter().map(|grid| grid.slope_lost)
+    }
+
+    /// Of each height field: its index into the scene's waves, and what is to be said of it.
+    pub fn field_notes(&self) -> impl Iterator<Item = (usize, FieldNotes)> {
+        let grids = self.grids.iter();
+        grids.filter_map(|grid| Some((grid.slope_lost.0, grid.notes?)))
     }
 
     /// Water that is computed on a grid and is flat: indices into the scene's waves.

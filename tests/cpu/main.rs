@@ -18,10 +18,14 @@ mod cli_program;
 mod cli_scene_file;
 mod cli_streams;
 mod experiment;
+mod field_files;
+#[path = "../support/field_files.rs"]
+mod field_support;
 mod folder;
 mod fuzz_cases;
 #[path = "../../fuzz/checks/mod.rs"]
 mod fuzz_checks;
+mod height_fields;
 mod image_exr;
 mod image_metadata;
 mod image_png;

@@ -17,6 +17,9 @@ mod determinism;
 mod energy;
 mod estimate;
 mod experiment;
+#[allow(dead_code, reason = "the tests of files use what is not used here")]
+#[path = "../support/field_files.rs"]
+mod field_support;
 mod flat;
 #[allow(
     dead_code,
@@ -28,6 +31,7 @@ mod footprint;
 mod formulas;
 mod hard_cases;
 mod harness;
+mod height_fields;
 mod instances;
 #[path = "../support/instances.rs"]
 mod instances_scene;
