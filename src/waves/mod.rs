@@ -5,16 +5,24 @@
 //! - `sines`, `trochoids`: waves with a formula;
 //! - `sea`, `ripples`: water that is computed on a grid (`grid`), and `spline`, the surface through the samples;
 //! - `spectrum`, `chance`, `clock`, `fourier`: what a sea is made of: variances, random numbers, phases, and the sum of its waves;
-//! - `harmonics`: the modes of a basin, added up on a grid.
+//! - `harmonics`: the modes of a basin, added up on a grid;
+//! - `open_water`: a basin whose walls absorb, without obstacles;
+//! - `tank`: a basin with obstacles, in steps of time, on the samples of `cells`: `footprint` is where obstacles cut the water, `mounds` what
+//!   drops add, and `continued` fills in what is not water.
 //!
 //! To add a kind: a file of its own, and a line where `surface` collects them.
 //! Nothing outside this folder may depend on how a surface is represented; a test in `tests/cpu/rooms.rs` checks that.
 
+mod cells;
 mod chance;
 mod clock;
+mod continued;
+mod footprint;
 mod fourier;
 mod grid;
 mod harmonics;
+mod mounds;
+mod open_water;
 mod ripples;
 mod row;
 mod sea;
@@ -22,6 +30,7 @@ mod sines;
 mod spectrum;
 mod spline;
 mod surface;
+mod tank;
 mod trochoids;
 
 pub use ripples::slope_lost;

@@ -38,6 +38,7 @@ mod mesh_store;
 mod methods;
 mod metrics;
 mod mutants;
+mod obstacles;
 mod output_files;
 mod physics;
 mod plans;
