@@ -7,8 +7,8 @@
 //! - `spectrum`, `chance`, `clock`, `fourier`: what a sea is made of: variances, random numbers, phases, and the sum of its waves;
 //! - `harmonics`: the modes of a basin, added up on a grid;
 //! - `open_water`: a basin whose walls absorb, without obstacles;
-//! - `tank`: a basin with obstacles, in steps of time, on the samples of `cells`: `footprint` is where obstacles cut the water, `mounds` what
-//!   drops add, and `continued` fills in what is not water.
+//! - `tank`: a basin with obstacles, in steps of time, on the samples of `cells`: `footprint` is where obstacles cut the water, `leapfrog`
+//!   is one step, `mounds` what drops add, and `continued` fills in what is not water.
 //!
 //! To add a kind: a file of its own, and a line where `surface` collects them.
 //! Nothing outside this folder may depend on how a surface is represented; a test in `tests/cpu/rooms.rs` checks that.
@@ -21,6 +21,7 @@ mod footprint;
 mod fourier;
 mod grid;
 mod harmonics;
+mod leapfrog;
 mod mounds;
 mod open_water;
 mod ripples;

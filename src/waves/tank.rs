@@ -3,7 +3,9 @@
 //! Heights stand at the samples, flows q at the faces between them: h_t = −∇·q, q_t = −c² ∇h − 2γ q, which is
 //! h_tt + 2γ h_t = c² ∇²h. No water flows through faces that an obstacle closes. Heights and flows alternate (leapfrog), second order in
 //! space and time; damping is integrated exactly over a step, so that it never limits the step. Beyond absorbing walls is a perfectly
-//! matched layer: heights and flows are split into the parts of x and z, each damped along its own axis.
+//! matched layer: heights are split into the parts of x and z, and parts and flows are damped along their own axis with a rate σ that grows
+//! into the layer. The layer is matched to damped water too: from the flow q̃ without the layer, q̃_t = −c² ∇h − 2γ q̃, follows
+//! q_t + σ q = q̃_t.
 //!
 //! Steps are counted from the first drop, so a state depends on its number alone, not on which times were asked for before. A drop starts at
 //! its own time: at the first step after it, its own solution is added as a Taylor series. Between steps, heights are interpolated by
@@ -15,27 +17,17 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::cells::Cells;
 use super::continued;
 use super::footprint::Footprint;
 use super::grid::{Edges, Heights};
+use super::leapfrog::{Leapfrog, State, decayed, decayed_twice};
 use super::mounds::Mounds;
 use super::open_water::shortest_wave_m;
 use super::ripples::description;
 use crate::kept::{Kept, Key};
 use crate::physics::oscillator::Elapsed;
 use crate::scene::{Ripples, Scene, Walls};
-
-/// What the absorbing layer leaves of the amplitude of a wave that crosses it at a right angle and comes back.
-const LAYER_LEAVES: f64 = 1e-5;
-
-/// Power with which damping grows into the layer.
-const LAYER_POWER: i32 = 3;
-
-/// Samples in a piece of work for a thread.
-const PIECE_SAMPLES: usize = 16_384;
 
 /// States that may be kept beside those of the latest frames.
 const MILESTONES: u64 = 24;
@@ -111,78 +103,9 @@ struct Tank<'a> {
     /// c², m²/s².
     speed_squared: f64,
     damping_per_s: f64,
-    step_s: f64,
-    /// Along x and z.
-    axes: [Axis; 2],
+    leapfrog: Leapfrog<'a>,
     /// Hash of all that states depend on, except for their numbers.
     sources: Key,
-}
-
-/// Factors of a step along one axis, for each sample and for the face before it.
-struct Axis {
-    /// What a step leaves of a flow, and what it adds to it per difference of heights, m/s.
-    flow_left: Vec<f64>,
-    flow_gain: Vec<f64>,
-    /// What a step leaves of a height, and what it takes from it per difference of flows, s/m.
-    height_left: Vec<f64>,
-    height_gain: Vec<f64>,
-}
-
-/// Heights at a step and flows half a step before it.
-#[derive(Clone, Debug)]
-struct State {
-    /// The parts of the heights that flows along x and z make, m.
-    parts_m: [Vec<f64>; 2],
-    /// Flows through the faces before the samples along x and z, m²/s.
-    flows: [Vec<f64>; 2],
-}
-
-/// (1 − e^(−rate t)) / rate, the integral of e^(−rate s) over 0 … t, for any sign of t.
-fn decayed(rate_per_s: f64, time_s: f64) -> f64 {
-    let exponent = rate_per_s * time_s;
-    if exponent == 0.0 {
-        time_s
-    } else {
-        time_s * (-(-exponent).exp_m1() / exponent)
-    }
-}
-
-/// The integral of [`decayed`] over 0 … t, t at least 0.
-fn decayed_twice(rate_per_s: f64, time_s: f64) -> f64 {
-    let exponent = rate_per_s * time_s;
-    if exponent < 1e-4 {
-        // The next term is below 10⁻⁹ of this.
-        0.5 * time_s * time_s * (1.0 - exponent / 3.0 + exponent * exponent / 12.0)
-    } else {
-        (time_s - decayed(rate_per_s, time_s)) / rate_per_s
-    }
-}
-
-impl Axis {
-    fn of(cells: &Cells, axis: usize, speed_m_per_s: f64, damping_per_s: f64, step_s: f64) -> Self {
-        let step_m = cells.step_m[axis];
-        let width_m = cells.layer as f64 * step_m;
-        let most_per_s = if cells.layer == 0 {
-            0.0
-        } else {
-            0.5 * f64::from(LAYER_POWER + 1) * speed_m_per_s * -LAYER_LEAVES.ln() / width_m
-        };
-        let layer_per_s =
-            |index: f64| most_per_s * cells.outside(axis, index).min(1.0).powi(LAYER_POWER);
-        let indices = || (0..cells.size[axis]).map(|index| index as f64);
-        let flow_per_s = |index: f64| layer_per_s(index - 0.5) + 2.0 * damping_per_s;
-        let gain = |rate_per_s: f64| decayed(rate_per_s, step_s) / step_m;
-        Self {
-            flow_left: indices().map(|i| (-flow_per_s(i) * step_s).exp()).collect(),
-            flow_gain: indices()
-                .map(|i| speed_m_per_s * speed_m_per_s * gain(flow_per_s(i)))
-                .collect(),
-            height_left: indices()
-                .map(|i| (-layer_per_s(i) * step_s).exp())
-                .collect(),
-            height_gain: indices().map(|i| gain(layer_per_s(i))).collect(),
-        }
-    }
 }
 
 impl<'a> Tank<'a> {
@@ -205,39 +128,38 @@ impl<'a> Tank<'a> {
         hasher.update(&text.expect("ripples always serialise"));
         hasher.update(&footprint.bytes());
         Self {
-            axes: [0, 1].map(|axis| Axis::of(cells, axis, speed_m_per_s, damping_per_s, step_s)),
+            leapfrog: Leapfrog::of(cells, footprint, speed_m_per_s, damping_per_s, step_s),
             mounds: Mounds::of(ripples),
             speed_squared: speed_m_per_s * speed_m_per_s,
             sources: *hasher.finalize().as_bytes(),
             cells,
             footprint,
             damping_per_s,
-            step_s,
         }
     }
 
     /// Heights `elapsed_s` after the first drop, at least 0.
     fn heights_m(&self, elapsed_s: f64, kept: &Kept) -> Vec<f64> {
-        if self.speed_squared == 0.0 || !self.step_s.is_finite() {
-            let mut state = self.at_rest();
+        if self.speed_squared == 0.0 || !self.leapfrog.step_s().is_finite() {
+            let mut state = self.leapfrog.at_rest();
             for index in self.mounds.between(f64::NEG_INFINITY, elapsed_s) {
                 self.add(&mut state, index, 0.0, 0.0);
             }
             return state.heights_m();
         }
-        let mut number = (elapsed_s / self.step_s) as u64;
+        let mut number = (elapsed_s / self.leapfrog.step_s()) as u64;
         // Rounding may have lifted the quotient.
-        if number as f64 * self.step_s > elapsed_s {
+        if number as f64 * self.leapfrog.step_s() > elapsed_s {
             number -= 1;
         }
         let state = self.state(number, kept);
-        let start_s = number as f64 * self.step_s;
-        let share = (elapsed_s - start_s) / self.step_s;
+        let start_s = number as f64 * self.leapfrog.step_s();
+        let share = (elapsed_s - start_s) / self.leapfrog.step_s();
         let mut heights_m = state.heights_m();
         if share > 0.0 {
             self.interpolate(&state, share, &mut heights_m);
             // Drops after the step are not in the states around it.
-            let mut fallen = self.at_rest();
+            let mut fallen = self.leapfrog.at_rest();
             let mut any = false;
             for index in self.mounds.between(start_s, elapsed_s) {
                 self.add(&mut fallen, index, elapsed_s - self.mounds.at_s(index), 0.0);
@@ -254,11 +176,11 @@ impl<'a> Tank<'a> {
 
     /// Heights at the share 0 … 1 of the way to the next step, by Lagrange's polynomial through four steps.
     fn interpolate(&self, state: &State, share: f64, heights_m: &mut [f64]) {
-        let before_m = self.heights_before_m(state);
+        let before_m = self.leapfrog.heights_before_m(state);
         let mut later = state.clone();
-        self.step(&mut later);
+        self.leapfrog.step(&mut later);
         let next_m = later.heights_m();
-        self.step(&mut later);
+        self.leapfrog.step(&mut later);
         let [parts_x, parts_z] = &later.parts_m;
         let t = share;
         let weights = [
@@ -298,12 +220,20 @@ impl<'a> Tank<'a> {
         };
         let mut state = start;
         while now < number {
-            self.step(&mut state);
+            self.leapfrog.step(&mut state);
             now += 1;
-            let (from_s, to_s) = ((now - 1) as f64 * self.step_s, now as f64 * self.step_s);
+            let (from_s, to_s) = (
+                (now - 1) as f64 * self.leapfrog.step_s(),
+                now as f64 * self.leapfrog.step_s(),
+            );
             for index in self.mounds.between(from_s, to_s) {
                 let since_s = to_s - self.mounds.at_s(index);
-                self.add(&mut state, index, since_s, since_s - 0.5 * self.step_s);
+                self.add(
+                    &mut state,
+                    index,
+                    since_s,
+                    since_s - 0.5 * self.leapfrog.step_s(),
+                );
             }
             if now % spacing == 0 && now < number {
                 kept.put(self.key(now), state.clone(), state.bytes());
@@ -323,19 +253,11 @@ impl<'a> Tank<'a> {
         *hasher.finalize().as_bytes()
     }
 
-    fn at_rest(&self) -> State {
-        let zeros = || vec![0.0; self.cells.count()];
-        State {
-            parts_m: [zeros(), zeros()],
-            flows: [zeros(), zeros()],
-        }
-    }
-
     /// The state with the number 0: drops of the first moment have fallen.
     fn start(&self) -> State {
-        let mut state = self.at_rest();
+        let mut state = self.leapfrog.at_rest();
         for index in self.mounds.between(f64::NEG_INFINITY, 0.0) {
-            self.add(&mut state, index, 0.0, -0.5 * self.step_s);
+            self.add(&mut state, index, 0.0, -0.5 * self.leapfrog.step_s());
         }
         state
     }
@@ -372,123 +294,14 @@ impl<'a> Tank<'a> {
                     let (before, after) = (place(index + count - 1), place(index + 1));
                     let here = slope(at, before);
                     let bend = (slope(after, at) - here) / step_m;
-                    state.flows[axis][at] -= self.speed_squared * of_flow * here;
+                    let flow = -self.speed_squared * of_flow * here;
+                    state.flows[axis][at] += flow;
+                    if let Some(free) = state.free[axis].get_mut(at) {
+                        *free += flow;
+                    }
                     state.parts_m[axis][at] += 0.5 * mound_m[at] + of_height * bend;
                 }
             }
         }
-    }
-
-    /// Moves a state by one step.
-    fn step(&self, state: &mut State) {
-        let width = self.cells.size[0];
-        let rows = (PIECE_SAMPLES / width).max(1);
-        let [axis_x, axis_z] = &self.axes;
-        let [open_x, open_z] = &self.footprint.open;
-        let [parts_x, parts_z] = &mut state.parts_m;
-        let [flows_x, flows_z] = &mut state.flows;
-        let height = self.cells.size[1];
-        let heights_of = |parts_x: &[f64], parts_z: &[f64], row: usize, sums: &mut [f64]| {
-            let range = row * width..(row + 1) * width;
-            for ((sum, x), z) in sums
-                .iter_mut()
-                .zip(&parts_x[range.clone()])
-                .zip(&parts_z[range])
-            {
-                *sum = x + z;
-            }
-        };
-        let (px, pz): (&[f64], &[f64]) = (parts_x, parts_z);
-        flows_x
-            .par_chunks_mut(rows * width)
-            .zip(flows_z.par_chunks_mut(rows * width))
-            .enumerate()
-            .for_each_init(
-                || [vec![0.0; width], vec![0.0; width]],
-                |[above, here], (piece, (flows_x, flows_z))| {
-                    let first = piece * rows;
-                    heights_of(px, pz, (first + height - 1) % height, above);
-                    let lines = flows_x
-                        .chunks_exact_mut(width)
-                        .zip(flows_z.chunks_exact_mut(width));
-                    for (row, (line_x, line_z)) in (first..).zip(lines) {
-                        heights_of(px, pz, row, here);
-                        let range = row * width..(row + 1) * width;
-                        let (open_x, open_z) = (&open_x[range.clone()], &open_z[range]);
-                        let mut before = here[width - 1];
-                        for i in 0..width {
-                            let moved = axis_x.flow_left[i] * line_x[i]
-                                - axis_x.flow_gain[i] * (here[i] - before);
-                            line_x[i] = if open_x[i] { moved } else { 0.0 };
-                            before = here[i];
-                        }
-                        let (left, gain) = (axis_z.flow_left[row], axis_z.flow_gain[row]);
-                        for i in 0..width {
-                            let moved = left * line_z[i] - gain * (here[i] - above[i]);
-                            line_z[i] = if open_z[i] { moved } else { 0.0 };
-                        }
-                        std::mem::swap(above, here);
-                    }
-                },
-            );
-        let (qx, qz): (&[f64], &[f64]) = (flows_x, flows_z);
-        parts_x
-            .par_chunks_mut(rows * width)
-            .zip(parts_z.par_chunks_mut(rows * width))
-            .enumerate()
-            .for_each(|(piece, (parts_x, parts_z))| {
-                let lines = parts_x
-                    .chunks_exact_mut(width)
-                    .zip(parts_z.chunks_exact_mut(width));
-                for (row, (line_x, line_z)) in (piece * rows..).zip(lines) {
-                    let flows = &qx[row * width..][..width];
-                    for i in 0..width {
-                        let after = flows[if i + 1 < width { i + 1 } else { 0 }];
-                        line_x[i] = axis_x.height_left[i] * line_x[i]
-                            - axis_x.height_gain[i] * (after - flows[i]);
-                    }
-                    let (flows, after) = (
-                        &qz[row * width..][..width],
-                        &qz[(row + 1) % height * width..][..width],
-                    );
-                    let (left, gain) = (axis_z.height_left[row], axis_z.height_gain[row]);
-                    for i in 0..width {
-                        line_z[i] = left * line_z[i] - gain * (after[i] - flows[i]);
-                    }
-                }
-            });
-    }
-
-    /// Heights one step before a state: a step of the heights, undone.
-    fn heights_before_m(&self, state: &State) -> Vec<f64> {
-        let [width, height] = self.cells.size;
-        let [axis_x, axis_z] = &self.axes;
-        let ([parts_x, parts_z], [flows_x, flows_z]) = (&state.parts_m, &state.flows);
-        let mut before_m = vec![0.0; self.cells.count()];
-        for (row, line) in before_m.chunks_exact_mut(width).enumerate() {
-            for (column, before_m) in line.iter_mut().enumerate() {
-                let at = row * width + column;
-                let right = row * width + (column + 1) % width;
-                let below = (row + 1) % height * width + column;
-                let x = parts_x[at] + axis_x.height_gain[column] * (flows_x[right] - flows_x[at]);
-                let z = parts_z[at] + axis_z.height_gain[row] * (flows_z[below] - flows_z[at]);
-                *before_m = x / axis_x.height_left[column] + z / axis_z.height_left[row];
-            }
-        }
-        before_m
-    }
-}
-
-impl State {
-    fn heights_m(&self) -> Vec<f64> {
-        let [x, z] = &self.parts_m;
-        x.iter().zip(z).map(|(x, z)| x + z).collect()
-    }
-
-    fn bytes(&self) -> u64 {
-        let arrays = self.parts_m.iter().chain(&self.flows);
-        arrays
-            .map(|array| size_of_val(array.as_slice()) as u64)
-            .sum()
     }
 }

@@ -39,6 +39,7 @@ mod methods;
 mod metrics;
 mod mutants;
 mod obstacles;
+mod open_water;
 mod output_files;
 mod physics;
 mod plans;
