@@ -69,7 +69,7 @@ fn the_surface_is_the_integral_over_wave_numbers() {
             ("finite_depth", None),
         ] {
             let omega = |k: f64| match (dispersion, depth_m) {
-                ("shallow", Some(depth_m)) => k * (9.80665 * depth_m).sqrt(),
+                ("shallow", Some(depth_m)) => k * f64::sqrt(9.80665 * depth_m),
                 (_, depth_m) => {
                     let tanh = depth_m.map_or(1.0, |depth_m| (k * depth_m).tanh());
                     ((9.80665 * k + 7.28e-5 * k.powi(3)) * tanh).sqrt()
