@@ -63,6 +63,7 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     all.extend(left_out_by_method(facts, &blocked));
     all.extend(coarse_cells(facts));
     all.extend(smoothed_waves(facts));
+    all.extend(idle_obstacles(facts));
     all.extend(seas_without_waves(facts, &resolved.scene));
     all.extend(height_fields::warnings(facts));
     let mut of_lights = Vec::new();
@@ -331,6 +332,19 @@ fn smoothed_waves(facts: &SceneFacts) -> Vec<Warning> {
             )
         })
         .collect()
+}
+
+/// Obstacles of basins that reflect nothing.
+fn idle_obstacles(facts: &SceneFacts) -> Vec<Warning> {
+    let idle = facts.water.surface.idle_obstacles();
+    idle.map(|(wave, place)| {
+        warning(
+            "obstacle_outside_basin",
+            "the object does not cut the water at rest where its basin has samples, so it reflects no ripples",
+            format!("/water/waves/{wave}/obstacles/{place}"),
+        )
+    })
+    .collect()
 }
 
 fn from_below(light: &BeamSet) -> Option<Warning> {

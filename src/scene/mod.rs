@@ -2,7 +2,8 @@
 //!
 //! - `types`, `waves`, `height_field`, `quality`, `dials`: the fields (`dials`: the choice of a method, and the dials that only this method has);
 //! - `json` reads text, `strict` reads values, `parse` puts the two together;
-//! - `ranges`, `validate`, `validate_output`: which values are refused;
+//! - `basin`: samples and steps of basins;
+//! - `ranges`, `validate`, `validate_obstacles`, `validate_output`: which values are refused;
 //! - `overrides`: single fields replaced from outside, as by command-line flags;
 //! - `projection`: a camera as matrices;
 //! - `resolve`: mesh ids become meshes; `field_frames`: those of files of heights become frames.
@@ -13,6 +14,7 @@
 //! To add a field: put it into `types` with unit, range and default in its doc comment, put its range into `ranges`, check it in
 //! `validate`, and run the tests: they report where `openapi.yaml` has to change.
 
+mod basin;
 pub mod dials;
 pub mod error;
 mod field_frames;
@@ -30,6 +32,7 @@ pub mod resolve;
 mod strict;
 pub mod types;
 pub mod validate;
+mod validate_obstacles;
 mod validate_output;
 pub mod waves;
 

@@ -9,8 +9,8 @@ use super::parse::ROTATION_LENGTH_TOLERANCE;
 use super::quality::Quality;
 use super::ranges::{self, number};
 use super::types::{Camera, Floor, Intrinsics, Light, Object, Output, Scale, Scene, Water};
-use super::validate_output;
 use super::waves::{GerstnerWave, Ripples, SpectrumWaves, Wave};
+use super::{validate_obstacles, validate_output};
 use crate::config::Limits;
 
 /// Smallest distance from a camera to its target, m.
@@ -34,6 +34,7 @@ impl Scene {
         let mut findings = Findings::default();
         findings.number("/time_s", self.time_s, &ranges::TIME);
         water(&mut findings, &self.water, limits);
+        validate_obstacles::obstacles(&mut findings, self);
         if let Some(floor_there) = &self.floor {
             floor(&mut findings, floor_there);
         }

@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
+use super::cells::Cells;
+use super::footprint::Footprint;
 use super::grid::Heights;
 use super::height_field::{self, FieldNotes, Moment};
 use super::row::Rows;
@@ -84,6 +86,8 @@ struct Grid {
     slope_lost: (usize, f64),
     /// Of a height field.
     notes: Option<FieldNotes>,
+    /// Obstacles, as places in the list of the basin, that do not cut its water.
+    idle_obstacles: Vec<usize>,
 }
 
 /// What is kept of water on a grid.
@@ -117,14 +121,18 @@ impl Grid {
         resolved: &ResolvedScene,
         index: usize,
         refinement: u32,
+        footprint: Option<&Footprint>,
         heights: impl FnOnce(u32) -> Heights,
     ) -> Self {
         let kept = resolved
             .kept
-            .get_or(key(&resolved.scene, index, refinement), || {
+            .get_or(key(&resolved.scene, index, refinement, footprint), || {
                 KeptGrid::of(heights(refinement), None)
             });
-        Self::kept(index, &kept)
+        Self {
+            idle_obstacles: footprint.map_or(Vec::new(), |footprint| footprint.idle.clone()),
+            ..Self::kept(index, &kept)
+        }
     }
 
     /// The grid of the scene's wave `index`, a height field.
@@ -151,12 +159,13 @@ impl Grid {
             description: kept.description.clone(),
             slope_lost: (index, kept.slope_lost),
             notes: kept.notes,
+            idle_obstacles: Vec::new(),
         }
     }
 }
 
 /// Hash of all that the grid of the scene's wave `index` depends on.
-fn key(scene: &Scene, index: usize, refinement: u32) -> Key {
+fn key(scene: &Scene, index: usize, refinement: u32, footprint: Option<&Footprint>) -> Key {
     let sources = (
         "water on a grid",
         &scene.water.waves[index],
@@ -165,9 +174,15 @@ fn key(scene: &Scene, index: usize, refinement: u32) -> Key {
         scene.time_s.to_bits(),
         refinement,
     );
-    hash(&sources)
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&hash(&sources));
+    if let Some(footprint) = footprint {
+        hasher.update(&footprint.bytes());
+    }
+    *hasher.finalize().as_bytes()
 }
 
+/// Hash of what a result is computed from.
 fn hash(sources: &impl serde::Serialize) -> Key {
     let text = serde_json::to_vec(sources).expect("waves always serialise");
     *blake3::hash(&text).as_bytes()
@@ -189,7 +204,9 @@ impl Surface {
     }
 
     /// The same with `refinement` times as many samples along the sides of grids, so that their splines miss less of what they stand for;
-    /// for references. The spline of a height field is its surface, which is not refined. Of a grid that would have more than 4096 samples along a side, the refinement is smaller.
+    /// for references. Of a grid that would have more than 4096 samples along a side, the refinement is smaller. Of basins with obstacles it
+    /// is at most 2: their waves are computed anew on the finer grid, in steps of half the time. The spline of a height field is its surface,
+    /// and is not refined.
     pub fn refined(resolved: &ResolvedScene, refinement: u32) -> Self {
         let scene = &resolved.scene;
         let waves = scene.water.waves.iter().enumerate();
@@ -197,16 +214,29 @@ impl Surface {
             Wave::Sine(_) | Wave::Gerstner(_) => None,
             Wave::Spectrum(waves) => {
                 let refinement = within(MAX_REFINED, refinement, waves.samples);
-                Some(Grid::of(resolved, index, refinement, |refinement| {
+                Some(Grid::of(resolved, index, refinement, None, |refinement| {
                     sea::heights(waves, scene, refinement)
                 }))
             }
             Wave::Ripples(waves) => {
-                // Mirror images double the sides.
-                let refinement = within(MAX_REFINED, refinement, 2 * waves.samples);
-                Some(Grid::of(resolved, index, refinement, |refinement| {
-                    ripples::heights(waves, scene, refinement)
-                }))
+                // Mirror images double the sides. In steps, twice the samples are eight times the work.
+                let most = if waves.obstacles.is_empty() {
+                    refinement
+                } else {
+                    refinement.min(2)
+                };
+                let refinement = within(MAX_REFINED, most, 2 * waves.samples);
+                let footprint = Footprint::of(waves, resolved, &Cells::of(waves, refinement));
+                let footprint = footprint.as_ref();
+                Some(Grid::of(
+                    resolved,
+                    index,
+                    refinement,
+                    footprint,
+                    |refinement| {
+                        ripples::heights(waves, scene, refinement, footprint, &resolved.kept)
+                    },
+                ))
             }
             Wave::HeightField(waves) => Some(Grid::of_field(resolved, index, waves)),
         });
@@ -349,6 +379,19 @@ impl Surface {
     pub fn field_notes(&self) -> impl Iterator<Item = (usize, FieldNotes)> {
         let grids = self.grids.iter();
         grids.filter_map(|grid| Some((grid.slope_lost.0, grid.notes?)))
+    }
+
+    /// Obstacles that do not cut the water at rest where their basin has samples: index into the scene's waves, and place in the list of
+    /// obstacles.
+    pub fn idle_obstacles(&self) -> impl Iterator<Item = (usize, usize)> {
+        let of_grid = |grid: &Grid| {
+            let wave = grid.slope_lost.0;
+            grid.idle_obstacles
+                .clone()
+                .into_iter()
+                .map(move |place| (wave, place))
+        };
+        self.grids.iter().flat_map(of_grid)
     }
 
     /// Water that is computed on a grid and is flat: indices into the scene's waves.

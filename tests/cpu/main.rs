@@ -42,6 +42,8 @@ mod mesh_store;
 mod methods;
 mod metrics;
 mod mutants;
+mod obstacles;
+mod open_water;
 mod output_files;
 mod physics;
 mod plans;
