@@ -3,8 +3,8 @@
 // Elements, after the first, which has the numbers of sines, trochoids and grids:
 // - a sine: amplitude (m), frequency along x and z (turns/m), phase (turns);
 // - a trochoid: the same, and a second element with its steepness;
-// - a grid, which repeats: place of its first coefficient (x, z) and reciprocals of its steps; numbers of coefficients along x and z, and
-//   the element in which its coefficients begin;
+// - a grid: place of its first coefficient (x, z) and reciprocals of its steps; numbers of coefficients along x and z, the element in
+//   which its coefficients begin, and 1 if it repeats, 0 if the water beyond it is flat;
 // - the coefficients of all grids (m), row by row along x, four to an element.
 @group(0) @binding(1) var<storage, read> waves: array<vec4f>;
 
@@ -57,6 +57,9 @@ fn trochoid_at(w: vec4f, steepness: f32, p_m: vec2f) -> vec3f {
 // The cubic B-spline through the samples of a grid.
 fn grid_surface_at(place: vec4f, shape: vec4f, p_m: vec2f) -> vec3f {
     var at = (p_m - place.xy) * place.zw;
+    if shape.w == 0.0 && (any(at < vec2f(0.0)) || any(at >= shape.xy)) {
+        return vec3f(0.0);
+    }
     // Rounding may leave it just below 0 or at the end; the indices below wrap.
     at -= shape.xy * floor(at / shape.xy);
     let cell = floor(at);

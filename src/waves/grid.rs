@@ -4,9 +4,20 @@ use glam::DVec2;
 
 use super::spline::Spline;
 
-/// Heights that repeat along x and z.
+/// What is beyond the samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Edges {
+    /// The same again, along x and z.
+    Repeats,
+    /// Water at rest.
+    Flat,
+}
+
+/// Heights on an even grid.
 #[derive(Clone, Debug)]
 pub(super) struct Heights {
+    /// What is beyond the samples.
+    pub(super) edges: Edges,
     /// Heights, m, row by row along x.
     pub(super) heights_m: Vec<f64>,
     /// Numbers of samples along x and z.
@@ -26,6 +37,10 @@ pub(super) struct Heights {
 impl Heights {
     /// The spline through the heights.
     pub(super) fn spline(self) -> Spline {
-        Spline::through(self.heights_m, self.size, self.step_m, self.corner_m)
+        let through = match self.edges {
+            Edges::Repeats => Spline::through,
+            Edges::Flat => Spline::in_flat_water,
+        };
+        through(self.heights_m, self.size, self.step_m, self.corner_m)
     }
 }

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::grid::Heights;
+use super::grid::{Edges, Heights};
 use super::harmonics::{Line, Parts};
 use crate::physics::dispersion::angular_frequency_with_surface_tension;
 use crate::physics::turns::sin_cos_turns;
@@ -59,6 +59,7 @@ pub(super) fn heights(ripples: &Ripples, scene: &Scene, refinement: u32) -> Heig
         (lines[0].rows(&columns), shortest_wave_m(&slopes, &sides))
     };
     Heights {
+        edges: Edges::Repeats,
         heights_m,
         size,
         step_m,

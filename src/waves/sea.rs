@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 
 use super::clock::Clock;
-use super::grid::Heights;
+use super::grid::{Edges, Heights};
 use super::spectrum::Spectrum;
 use super::{chance, fourier, spline};
 use crate::physics::turns::sin_cos_turns;
@@ -27,6 +27,7 @@ pub(super) fn heights(waves: &SpectrumWaves, scene: &Scene, refinement: u32) -> 
         None => vec![0.0; samples * samples],
     };
     Heights {
+        edges: Edges::Repeats,
         heights_m,
         size: [samples; 2],
         step_m: glam::DVec2::splat(waves.tile_m / samples as f64),

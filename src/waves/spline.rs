@@ -9,6 +9,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::grid::Edges;
 use super::surface::{Curvature, SurfacePoint};
 
 /// Pole of the filter that turns samples into coefficients.
@@ -17,12 +18,20 @@ const POLE: f64 = -0.267_949_192_431_122_7;
 /// Steps after which the filter has forgotten a sample: |POLE|³⁰ < 10⁻¹⁷.
 const MEMORY: usize = 30;
 
+/// Coefficients around samples in flat water: in [`SETTLING`] steps those of the samples fall to 10⁻⁹ of them, the outermost
+/// [`ZEROS`] are 0. With so many zeros at both ends, a grid that repeats is the same as one with zeros beyond it, so that all of
+/// filter, evaluation and bounds serves both.
+const PADDING: usize = SETTLING + ZEROS;
+const SETTLING: usize = 16;
+const ZEROS: usize = 2;
+
 /// Directions in which slopes are bounded.
 const DIRECTIONS: usize = 32;
 
-/// Heights on an even grid that repeats along x and z, and the spline through them.
+/// Heights on an even grid, and the spline through them. Beyond the grid it repeats along x and z, or the water is flat.
 #[derive(Clone, Debug)]
 pub(super) struct Spline {
+    edges: Edges,
     /// Numbers of coefficients along x and z.
     size: [usize; 2],
     /// Distances of the samples along x and z, m.
@@ -47,7 +56,8 @@ struct Bounds {
 /// A spline is its coefficients: two with the same have the same bounds.
 impl PartialEq for Spline {
     fn eq(&self, other: &Self) -> bool {
-        self.size == other.size
+        self.edges == other.edges
+            && self.size == other.size
             && self.step_m == other.step_m
             && self.corner_m == other.corner_m
             && self.coefficients == other.coefficients
@@ -55,7 +65,7 @@ impl PartialEq for Spline {
 }
 
 impl Spline {
-    /// The spline through `heights_m`. `corner_m` is the place of the first sample; rows run along x.
+    /// The spline through `heights_m`, which repeats. `corner_m` is the place of the first sample; rows run along x.
     pub(super) fn through(
         heights_m: Vec<f64>,
         size: [usize; 2],
@@ -64,7 +74,45 @@ impl Spline {
     ) -> Self {
         let mut coefficients = heights_m;
         filter(&mut coefficients, size);
+        Self::of(Edges::Repeats, coefficients, size, step_m, corner_m)
+    }
+
+    /// The spline through `heights_m`, around which the water is flat: beyond the samples it swings out, a quarter as high per
+    /// sample, and ends 18 samples from them.
+    pub(super) fn in_flat_water(
+        heights_m: Vec<f64>,
+        size: [usize; 2],
+        step_m: DVec2,
+        corner_m: DVec2,
+    ) -> Self {
+        let [width, height] = size.map(|count| count + 2 * PADDING);
+        let mut coefficients = vec![0.0; width * height];
+        let rows = coefficients.chunks_exact_mut(width).skip(PADDING);
+        for (row, samples) in rows.zip(heights_m.chunks_exact(size[0])) {
+            row[PADDING..][..size[0]].copy_from_slice(samples);
+        }
+        // The nearest copies are so far away that they add less than rounding does.
+        filter(&mut coefficients, [width, height]);
+        for (z, row) in coefficients.chunks_exact_mut(width).enumerate() {
+            if z < ZEROS || z >= height - ZEROS {
+                row.fill(0.0);
+            }
+            row[..ZEROS].fill(0.0);
+            row[width - ZEROS..].fill(0.0);
+        }
+        let corner_m = corner_m - PADDING as f64 * step_m;
+        Self::of(Edges::Flat, coefficients, [width, height], step_m, corner_m)
+    }
+
+    fn of(
+        edges: Edges,
+        coefficients: Vec<f64>,
+        size: [usize; 2],
+        step_m: DVec2,
+        corner_m: DVec2,
+    ) -> Self {
         Self {
+            edges,
             size,
             step_m,
             corner_m,
@@ -75,10 +123,12 @@ impl Spline {
 
     /// See [`super::Surface::recentred`].
     pub(super) fn recentred(&self, origin_m: DVec2) -> Self {
-        // The copy nearest to the origin, so that f32 holds its place.
-        let tile_m = self.tile_m();
-        let corner_m = self.corner_m - origin_m;
-        let corner_m = corner_m - tile_m * (corner_m / tile_m).round();
+        let mut corner_m = self.corner_m - origin_m;
+        if self.edges == Edges::Repeats {
+            // The copy nearest to the origin, so that f32 holds its place.
+            let tile_m = self.tile_m();
+            corner_m -= tile_m * (corner_m / tile_m).round();
+        }
         Self {
             corner_m,
             ..self.clone()
@@ -93,6 +143,9 @@ impl Spline {
     /// See [`super::Surface::at`].
     pub(super) fn at(&self, x_m: f64, z_m: f64) -> SurfacePoint {
         let at = (DVec2::new(x_m, z_m) - self.corner_m) / self.step_m;
+        if self.is_beyond(at) {
+            return SurfacePoint::FLAT;
+        }
         let cell = at.floor();
         let (t, first) = (at - cell, [cell.x as i64 - 1, cell.y as i64 - 1]);
         let (wx, dx) = (weights(t.x), slopes(t.x));
@@ -113,6 +166,9 @@ impl Spline {
     /// See [`super::Surface::curved_at`].
     pub(super) fn curved_at(&self, x_m: f64, z_m: f64) -> (SurfacePoint, Curvature) {
         let at = (DVec2::new(x_m, z_m) - self.corner_m) / self.step_m;
+        if self.is_beyond(at) {
+            return (SurfacePoint::FLAT, Curvature::FLAT);
+        }
         let cell = at.floor();
         let (t, first) = (at - cell, [cell.x as i64 - 1, cell.y as i64 - 1]);
         let (wx, dx, cx) = (weights(t.x), slopes(t.x), curvatures(t.x));
@@ -138,6 +194,13 @@ impl Spline {
             zz_per_m: sums[5] / (step.y * step.y),
         };
         (point, curvature)
+    }
+
+    /// Whether a point, in steps from the first coefficient, is in the flat water beyond the grid.
+    fn is_beyond(&self, at: DVec2) -> bool {
+        let [width, height] = self.size.map(|count| count as f64);
+        let is_within = (0.0..width).contains(&at.x) && (0.0..height).contains(&at.y);
+        self.edges == Edges::Flat && !is_within
     }
 
     /// Calls `add` with the four coefficients of each of the four rows from `first` on.
@@ -186,13 +249,17 @@ impl Spline {
     }
 
     /// The grid for the GPU, whose coefficients begin at the element `first`: place of the first coefficient and reciprocal steps;
-    /// then numbers of coefficients along x and z, and `first`: whole numbers below 2²⁴.
+    /// then numbers of coefficients along x and z, and `first`: whole numbers below 2²⁴; then 1 if it repeats, else 0.
     pub(super) fn gpu_header(&self, first: usize) -> [[f32; 4]; 2] {
         let [width, height] = self.size.map(|count| count as f32);
+        let repeats = match self.edges {
+            Edges::Repeats => 1.0,
+            Edges::Flat => 0.0,
+        };
         let (corner, inverse) = (self.corner_m.as_vec2(), self.step_m.recip().as_vec2());
         [
             [corner.x, corner.y, inverse.x, inverse.y],
-            [width, height, first as f32, 0.0],
+            [width, height, first as f32, repeats],
         ]
     }
 
