@@ -16,9 +16,7 @@ pub(crate) fn water(effort: Effort) -> Result<Table, Box<dyn Error>> {
         depend on time; all others have only that of it.";
     let columns = ["water", "samples", "first frame", "each further"];
     let mut table = Table::new("Water on a grid", note, &columns);
-    let sea = |samples: u32| {
-        json!({ "kind": "spectrum", "model": "jonswap", "wind_speed_m_s": 8, "tile_m": 50, "samples": samples })
-    };
+    let sea = |samples: u32| json!({ "kind": "spectrum", "model": "jonswap", "wind_speed_m_s": 8, "tile_m": 50, "samples": samples });
     let basin = json!({
         "kind": "ripples", "min_m": [-1, -1], "max_m": [1, 1], "samples": 256,
         "drops": [{ "position_m": [0.2, 0.1], "radius_m": 0.05, "height_m": 0.01, "at_s": -3 }]

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::grid::Heights;
+use super::grid::Computed;
 use super::row::Rows;
 use super::sines::Sines;
 use super::spline::Spline;
@@ -83,35 +83,20 @@ struct Grid {
     slope_lost: (usize, f64),
 }
 
-/// What is kept of water on a grid.
-#[derive(Debug)]
-struct KeptGrid {
-    spline: Spline,
-    shortest_wave_m: f64,
-    slope_lost: f64,
-    description: String,
-}
-
 impl Grid {
-    /// The grid of the scene's wave `index`; `heights` computes it if it is not kept.
+    /// The grid of the scene's wave `index`; `compute` makes it if it is not kept.
     fn of(
         resolved: &ResolvedScene,
         index: usize,
         refinement: u32,
-        heights: impl FnOnce(u32) -> Heights,
+        compute: impl FnOnce(u32) -> Computed,
     ) -> Self {
         let kept = resolved
             .kept
             .get_or(key(&resolved.scene, index, refinement), || {
-                let heights = heights(refinement);
-                let grid = KeptGrid {
-                    shortest_wave_m: heights.shortest_wave_m,
-                    slope_lost: heights.slope_lost,
-                    description: heights.description.clone(),
-                    spline: heights.spline(),
-                };
-                let bytes = size_of_val(grid.spline.coefficients()) as u64;
-                (grid, bytes)
+                let computed = compute(refinement);
+                let bytes = size_of_val(computed.spline.coefficients()) as u64;
+                (computed, bytes)
             });
         Self {
             spline: kept.spline.clone(),
@@ -161,14 +146,14 @@ impl Surface {
             Wave::Spectrum(waves) => {
                 let refinement = within(MAX_REFINED, refinement, waves.samples);
                 Some(Grid::of(resolved, index, refinement, |refinement| {
-                    sea::heights(waves, scene, refinement)
+                    sea::computed(waves, resolved, refinement)
                 }))
             }
             Wave::Ripples(waves) => {
                 // Mirror images double the sides.
                 let refinement = within(MAX_REFINED, refinement, 2 * waves.samples);
                 Some(Grid::of(resolved, index, refinement, |refinement| {
-                    ripples::heights(waves, scene, refinement)
+                    ripples::heights(waves, scene, refinement).into()
                 }))
             }
         });

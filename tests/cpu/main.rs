@@ -22,6 +22,7 @@ mod folder;
 mod fuzz_cases;
 #[path = "../../fuzz/checks/mod.rs"]
 mod fuzz_checks;
+mod grid_bounds;
 mod image_exr;
 mod image_metadata;
 mod image_png;
