@@ -4,7 +4,7 @@
 //! smallest and the largest beside it, since other work on the machine shows first in the largest.
 //!
 //! `frames` measures rendering, `instances` many objects, `savings` skipped or kept work, `accuracy` the estimate of a frame's error,
-//! `pieces` long dispatches, `files` encoding, `service` HTTP. `spread` summarises runs, `memory` reads the system's figures, `report`
+//! `pieces` long dispatches, `water` seas and basins, `files` encoding, `service` HTTP. `spread` summarises runs, `memory` reads the system's figures, `report`
 //! writes the tables.
 
 mod accuracy;
@@ -17,6 +17,7 @@ mod report;
 mod savings;
 mod service;
 mod spread;
+mod water;
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -56,12 +57,13 @@ const QUICK: Effort = Effort {
 };
 
 /// All benchmarks; arguments select some.
-const ROOMS: [&str; 6] = [
+const ROOMS: [&str; 7] = [
     "frames",
     "instances",
     "savings",
     "estimates",
     "pieces",
+    "water",
     "service",
 ];
 
@@ -143,6 +145,9 @@ fn measure(report: &mut Report, effort: Effort, rooms: &[&str]) -> Result<(), Bo
     }
     if rooms.contains(&"pieces") {
         report.tables.push(pieces::pieces(effort)?);
+    }
+    if rooms.contains(&"water") {
+        report.tables.push(water::water(effort)?);
     }
     if rooms.contains(&"service") {
         let service = service::requests(effort)?;

@@ -34,13 +34,36 @@ pub(super) struct Heights {
     pub(super) description: String,
 }
 
-impl Heights {
-    /// The spline through the heights.
-    pub(super) fn spline(self) -> Spline {
-        let through = match self.edges {
+/// Water on a grid: the surface, and what is told of it.
+#[derive(Debug)]
+pub(super) struct Computed {
+    pub(super) spline: Spline,
+    /// See [`Heights::shortest_wave_m`].
+    pub(super) shortest_wave_m: f64,
+    /// See [`Heights::slope_lost`].
+    pub(super) slope_lost: f64,
+    /// See [`Heights::description`].
+    pub(super) description: String,
+}
+
+impl From<Heights> for Computed {
+    fn from(heights: Heights) -> Self {
+        let through = match heights.edges {
             Edges::Repeats => Spline::through,
             Edges::Flat => Spline::in_flat_water,
         };
-        through(self.heights_m, self.size, self.step_m, self.corner_m)
+        let Heights {
+            heights_m,
+            size,
+            step_m,
+            corner_m,
+            ..
+        } = heights;
+        Self {
+            spline: through(heights_m, size, step_m, corner_m),
+            shortest_wave_m: heights.shortest_wave_m,
+            slope_lost: heights.slope_lost,
+            description: heights.description,
+        }
     }
 }

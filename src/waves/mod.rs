@@ -3,7 +3,7 @@
 //! - `surface`: [`Surface`], the only interface; it adds up the kinds of water;
 //! - `row`: the points of a row, evaluated a block at a time;
 //! - `sines`, `trochoids`: waves with a formula;
-//! - `sea`, `ripples`: water that is computed on a grid (`grid`), and `spline`, the surface through the samples;
+//! - `sea`, `ripples`: water that is computed on a grid (`grid`), and `spline`, the surface through the samples, with its `bounds`;
 //! - `height_field`: water from samples that a user brings, and `gradient`, heights from slopes;
 //! - `spectrum`, `chance`, `clock`, `fourier`: what a sea is made of: variances, random numbers, phases, and the sum of its waves;
 //! - `harmonics`: the modes of a basin, added up on a grid;
@@ -14,6 +14,7 @@
 //! To add a kind: a file of its own, and a line where `surface` collects them.
 //! Nothing outside this folder may depend on how a surface is represented; a test in `tests/cpu/rooms.rs` checks that.
 
+mod bounds;
 mod cells;
 mod chance;
 mod clock;

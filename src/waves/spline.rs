@@ -3,14 +3,15 @@
 //! Second derivatives are continuous; the caustics of a surface made of facets would show the facets. Source: Unser, Aldroubi and
 //! Eden, "B-Spline Signal Processing: Part II", IEEE Trans. Signal Processing 41(2), 1993.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::bounds::Bounds;
 use super::grid::Edges;
 use super::surface::{Curvature, SurfacePoint};
+use crate::physics::turns::sin_cos_turns;
 
 /// Pole of the filter that turns samples into coefficients.
 const POLE: f64 = -0.267_949_192_431_122_7;
@@ -25,9 +26,6 @@ const PADDING: usize = SETTLING + ZEROS;
 const SETTLING: usize = 16;
 const ZEROS: usize = 2;
 
-/// Directions in which slopes are bounded.
-const DIRECTIONS: usize = 32;
-
 /// Heights on an even grid, and the spline through them. Beyond the grid it repeats along x and z, or the water is flat.
 #[derive(Clone, Debug)]
 pub(super) struct Spline {
@@ -41,16 +39,6 @@ pub(super) struct Spline {
     /// Row by row along x.
     coefficients: Arc<[f64]>,
     bounds: Arc<Bounds>,
-}
-
-/// Bounds of the spline and its derivatives, true at every point.
-#[derive(Debug, PartialEq)]
-struct Bounds {
-    height_m: f64,
-    /// Largest slope along each of [`DIRECTIONS`] directions.
-    slopes: [f64; DIRECTIONS],
-    second_per_m: f64,
-    third_per_m2: f64,
 }
 
 /// A spline is its coefficients: two with the same have the same bounds.
@@ -104,7 +92,9 @@ impl Spline {
         Self::of(Edges::Flat, coefficients, [width, height], step_m, corner_m)
     }
 
-    fn of(
+    /// The spline with these coefficients, row by row along x. If it does not repeat, those at the edges are 0. `corner_m` is the place of
+    /// the first.
+    pub(super) fn of(
         edges: Edges,
         coefficients: Vec<f64>,
         size: [usize; 2],
@@ -228,9 +218,7 @@ impl Spline {
 
     /// See [`super::Surface::max_slope`].
     pub(super) fn max_slope(&self) -> f64 {
-        (0..DIRECTIONS)
-            .map(|i| self.bounds.corner(i).length())
-            .fold(0.0, f64::max)
+        self.bounds.slope()
     }
 
     /// See [`super::Surface::max_second_derivative_per_m`].
@@ -245,7 +233,7 @@ impl Spline {
 
     /// A slope that no slope exceeds along the unit vector `u`.
     pub(super) fn rim_slope(&self, u: DVec2) -> DVec2 {
-        self.bounds.corner(sector_of(u))
+        self.bounds.rim_slope(u)
     }
 
     /// The grid for the GPU, whose coefficients begin at the element `first`: place of the first coefficient and reciprocal steps;
@@ -269,12 +257,17 @@ impl Spline {
     }
 }
 
+/// Amplitude of a wave of `frequency`, in waves per sample, in the coefficients of the spline through samples of one of amplitude 1.
+pub(super) fn in_coefficients(frequency: f64) -> f64 {
+    3.0 / (2.0 + sin_cos_turns(frequency).1)
+}
+
 /// Amplitude of a wave of `frequency`, in waves per sample, in the spline through samples of one of amplitude 1; the rest is in other
 /// frequencies. Source: Unser, Aldroubi and Eden 1993, the Fourier transform of the cardinal spline.
 pub(super) fn carried(frequency: f64) -> f64 {
     let x = std::f64::consts::PI * frequency;
     let sinc = if x == 0.0 { 1.0 } else { x.sin() / x };
-    sinc.powi(4) * 3.0 / (2.0 + (2.0 * x).cos())
+    sinc.powi(4) * in_coefficients(frequency)
 }
 
 fn wrapped(index: i64, count: usize) -> usize {
@@ -361,121 +354,4 @@ fn filter_line(line: &mut [f64]) {
         next = POLE * (next - *value);
         *value = next;
     }
-}
-
-/// Unit vector of a direction.
-fn direction(i: usize) -> DVec2 {
-    DVec2::from_angle(TAU * i as f64 / DIRECTIONS as f64)
-}
-
-impl Bounds {
-    fn of(coefficients: &[f64], [width, height]: [usize; 2], step: DVec2) -> Self {
-        let row = |z: usize| &coefficients[z % height * width..][..width];
-        // Differences of the coefficients are coefficients of derivatives, whose weights add up to 1.
-        let differences = |z: usize| {
-            let rows = [0, 1, 2, 3].map(|i| row(z + i));
-            let mut most = [0.0_f64; 7];
-            for x in 0..width {
-                let c: [[f64; 4]; 4] =
-                    std::array::from_fn(|j| std::array::from_fn(|i| rows[j][(x + i) % width]));
-                let first = |line: [f64; 4]| line[1] - line[0];
-                let second = |line: [f64; 4]| line[2] - 2.0 * line[1] + line[0];
-                let third = |line: [f64; 4]| line[3] - 3.0 * line[2] + 3.0 * line[1] - line[0];
-                let down = |i: usize| [c[0][i], c[1][i], c[2][i], c[3][i]];
-                let values = [
-                    second(c[0]),
-                    first(c[1]) - first(c[0]),
-                    second(down(0)),
-                    third(c[0]),
-                    second(c[1]) - second(c[0]),
-                    second(down(1)) - second(down(0)),
-                    third(down(0)),
-                ];
-                for (most, value) in most.iter_mut().zip(values) {
-                    *most = most.max(value.abs());
-                }
-            }
-            most
-        };
-        let joined = |a: [f64; 7], b: [f64; 7]| std::array::from_fn(|i| a[i].max(b[i]));
-        let [xx, xz, zz, xxx, xxz, xzz, zzz] = (0..height)
-            .into_par_iter()
-            .map(differences)
-            .reduce(|| [0.0; 7], joined);
-        let (sx, sz) = (step.x, step.y);
-        let (xx, xz, zz) = (xx / (sx * sx), xz / (sx * sz), zz / (sz * sz));
-        let second_per_m = (xx * xx + 2.0 * xz * xz + zz * zz).sqrt();
-        let (xxx, zzz) = (xxx / sx.powi(3), zzz / sz.powi(3));
-        let (xxz, xzz) = (xxz / (sx * sx * sz), xzz / (sx * sz * sz));
-        let third_per_m2 = (xxx * xxx + 3.0 * (xxz * xxz + xzz * xzz) + zzz * zzz).sqrt();
-
-        let (seen_height, seen_slopes) = (0..height)
-            .into_par_iter()
-            .map(|z| extremes_between([0, 1, 2, 3].map(|i| row(z + i)), step))
-            .reduce(
-                || (0.0, [0.0; DIRECTIONS]),
-                |a, b| (a.0.max(b.0), std::array::from_fn(|i| a.1[i].max(b.1[i]))),
-            );
-        // Between points half a step apart, a function exceeds its bilinear interpolation by less than this.
-        let over = |along_x: f64, along_z: f64| (sx * sx * along_x + sz * sz * along_z) / 32.0;
-        let most_coefficient = coefficients.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
-        Self {
-            height_m: most_coefficient.min(seen_height + over(xx, zz)),
-            slopes: seen_slopes.map(|slope| slope + over(xxx.hypot(xxz), xzz.hypot(zzz))),
-            second_per_m,
-            third_per_m2,
-        }
-    }
-
-    /// The corner of the polygon around all slopes between the directions `i` and `i` + 1.
-    fn corner(&self, i: usize) -> DVec2 {
-        let (a, b) = (direction(i), direction(i + 1));
-        let (along_a, along_b) = (self.slopes[i], self.slopes[(i + 1) % DIRECTIONS]);
-        // The point whose components along a and b are these.
-        DVec2::new(along_a * b.y - along_b * a.y, along_b * a.x - along_a * b.x) / a.perp_dot(b)
-    }
-
-    /// Upper bound of the slope along the unit vector `u`.
-    fn slope_along(&self, u: DVec2) -> f64 {
-        self.corner(sector_of(u)).dot(u)
-    }
-}
-
-/// The direction before the unit vector `u`.
-fn sector_of(u: DVec2) -> usize {
-    let turns = u.y.atan2(u.x) / TAU;
-    (turns.rem_euclid(1.0) * DIRECTIONS as f64) as usize % DIRECTIONS
-}
-
-/// Largest height, and largest slope along each direction, at points half a step apart in the cells of a row.
-fn extremes_between(rows: [&[f64]; 4], step: DVec2) -> (f64, [f64; DIRECTIONS]) {
-    let width = rows[0].len();
-    let directions: [DVec2; DIRECTIONS] = std::array::from_fn(direction);
-    let (cosines, sines) = (
-        directions.map(|d| d.x / step.x),
-        directions.map(|d| d.y / step.y),
-    );
-    let mut height: f64 = 0.0;
-    let mut most = [0.0; DIRECTIONS];
-    for t in [0.0, 0.5] {
-        let (wz, dz) = (weights(t), slopes(t));
-        let across = |w: [f64; 4], x: usize| {
-            w[0] * rows[0][x] + w[1] * rows[1][x] + w[2] * rows[2][x] + w[3] * rows[3][x]
-        };
-        let values: Vec<f64> = (0..width + 3).map(|x| across(wz, x % width)).collect();
-        let downs: Vec<f64> = (0..width + 3).map(|x| across(dz, x % width)).collect();
-        for s in [0.0, 0.5] {
-            let (wx, dx) = (weights(s), slopes(s));
-            for (value, down) in values.windows(4).zip(downs.windows(4)) {
-                let of =
-                    |w: &[f64; 4], v: &[f64]| w[0] * v[0] + w[1] * v[1] + w[2] * v[2] + w[3] * v[3];
-                let (h, gx, gz) = (of(&wx, value), of(&dx, value), of(&wx, down));
-                height = height.max(h.abs());
-                for i in 0..DIRECTIONS {
-                    most[i] = f64::max(most[i], gx * cosines[i] + gz * sines[i]);
-                }
-            }
-        }
-    }
-    (height, most)
 }

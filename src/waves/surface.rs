@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::cells::Cells;
 use super::footprint::Footprint;
-use super::grid::Heights;
+use super::grid::Computed;
 use super::height_field::{self, FieldNotes, Moment};
 use super::row::Rows;
 use super::sines::Sines;
@@ -93,41 +93,31 @@ struct Grid {
 /// What is kept of water on a grid.
 #[derive(Debug)]
 struct KeptGrid {
-    spline: Spline,
-    shortest_wave_m: f64,
-    slope_lost: f64,
-    description: String,
+    computed: Computed,
     notes: Option<FieldNotes>,
 }
 
 impl KeptGrid {
     /// With the number of its bytes.
-    fn of(heights: Heights, notes: Option<FieldNotes>) -> (Self, u64) {
-        let grid = Self {
-            shortest_wave_m: heights.shortest_wave_m,
-            slope_lost: heights.slope_lost,
-            description: heights.description.clone(),
-            spline: heights.spline(),
-            notes,
-        };
-        let bytes = size_of_val(grid.spline.coefficients()) as u64;
-        (grid, bytes)
+    fn of(computed: Computed, notes: Option<FieldNotes>) -> (Self, u64) {
+        let bytes = size_of_val(computed.spline.coefficients()) as u64;
+        (Self { computed, notes }, bytes)
     }
 }
 
 impl Grid {
-    /// The grid of the scene's wave `index`; `heights` computes it if it is not kept.
+    /// The grid of the scene's wave `index`; `compute` makes it if it is not kept.
     fn of(
         resolved: &ResolvedScene,
         index: usize,
         refinement: u32,
         footprint: Option<&Footprint>,
-        heights: impl FnOnce(u32) -> Heights,
+        compute: impl FnOnce(u32) -> Computed,
     ) -> Self {
         let kept = resolved
             .kept
             .get_or(key(&resolved.scene, index, refinement, footprint), || {
-                KeptGrid::of(heights(refinement), None)
+                KeptGrid::of(compute(refinement), None)
             });
         Self {
             idle_obstacles: footprint.map_or(Vec::new(), |footprint| footprint.idle.clone()),
@@ -147,17 +137,18 @@ impl Grid {
         let sources = ("height field", waves, moment.bits());
         let kept = resolved.kept.get_or(hash(&sources), || {
             let (heights, notes) = height_field::heights(waves, frames, &moment);
-            KeptGrid::of(heights, Some(notes))
+            KeptGrid::of(heights.into(), Some(notes))
         });
         Self::kept(index, &kept)
     }
 
     fn kept(index: usize, kept: &KeptGrid) -> Self {
+        let computed = &kept.computed;
         Self {
-            spline: kept.spline.clone(),
-            shortest_wave_m: kept.shortest_wave_m,
-            description: kept.description.clone(),
-            slope_lost: (index, kept.slope_lost),
+            spline: computed.spline.clone(),
+            shortest_wave_m: computed.shortest_wave_m,
+            description: computed.description.clone(),
+            slope_lost: (index, computed.slope_lost),
             notes: kept.notes,
             idle_obstacles: Vec::new(),
         }
@@ -215,7 +206,7 @@ impl Surface {
             Wave::Spectrum(waves) => {
                 let refinement = within(MAX_REFINED, refinement, waves.samples);
                 Some(Grid::of(resolved, index, refinement, None, |refinement| {
-                    sea::heights(waves, scene, refinement)
+                    sea::computed(waves, resolved, refinement)
                 }))
             }
             Wave::Ripples(waves) => {
@@ -234,7 +225,7 @@ impl Surface {
                     refinement,
                     footprint,
                     |refinement| {
-                        ripples::heights(waves, scene, refinement, footprint, &resolved.kept)
+                        ripples::heights(waves, scene, refinement, footprint, &resolved.kept).into()
                     },
                 ))
             }

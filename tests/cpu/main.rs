@@ -25,6 +25,7 @@ mod folder;
 mod fuzz_cases;
 #[path = "../../fuzz/checks/mod.rs"]
 mod fuzz_checks;
+mod grid_bounds;
 mod height_fields;
 mod image_exr;
 mod image_metadata;

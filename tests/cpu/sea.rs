@@ -9,7 +9,7 @@ use caustica::physics::sea::{
     Elfouhaily, FrequencySpectrum, depth_factor, phillips, phillips_peak,
 };
 use caustica::physics::spreading::{Spread, elfouhaily_delta};
-use caustica::scene::{Scene, SpectrumWaves, Wave};
+use caustica::scene::{ResolvedScene, Scene, SpectrumWaves, Wave};
 use caustica::waves::{ROW_POINTS, RowPoints, Surface};
 use glam::DVec2;
 use serde_json::{Value, json};
@@ -581,4 +581,100 @@ fn what_the_samples_miss_is_told() {
     assert!((0.01..0.03).contains(&four), "{four}");
     let eight = lost(2.0)[0].1;
     assert!(eight < 0.002, "{eight}");
+}
+
+/// Seas as they were when they were first computed, wave by wave: a seed never gets another sea.
+#[test]
+fn a_seed_keeps_its_sea() {
+    let places = [(0.0, 0.0), (12.3, 45.6), (-7.0, 20.1)];
+    for (fields, time_s, points) in [
+        (
+            json!({ "seed": 7 }),
+            0.0,
+            [
+                (
+                    0.07826794415020595,
+                    -0.10003714163091974,
+                    0.005185793382114206,
+                ),
+                (
+                    -0.3123973936043561,
+                    -0.04906104867516272,
+                    0.1232768457201835,
+                ),
+                (
+                    -0.06492775142515543,
+                    0.07053992524836847,
+                    -0.008016168084401991,
+                ),
+            ],
+        ),
+        (
+            json!({ "seed": 4_000_000_000_u32, "spreading": "hasselmann", "wind_direction_deg": 70 }),
+            1234.5,
+            [
+                (
+                    -0.24548098359370896,
+                    -0.03368194845100653,
+                    -0.13666881821024332,
+                ),
+                (
+                    0.026876195397168793,
+                    0.10150618336625036,
+                    -0.09962459673038816,
+                ),
+                (
+                    -0.3618487028297276,
+                    0.12049026694744022,
+                    0.09794596554637551,
+                ),
+            ],
+        ),
+        (
+            json!({ "model": "elfouhaily", "loop_s": 10, "significant_height_m": 0.5, "samples": 128 }),
+            -3.3,
+            [
+                (
+                    0.06507716270164747,
+                    0.017212389677126773,
+                    0.0007970965382714646,
+                ),
+                (
+                    -0.13128197640959072,
+                    -0.041391327071754684,
+                    0.01597220776238606,
+                ),
+                (
+                    -0.03126523046895604,
+                    0.0021416363518166957,
+                    0.0026126940663941966,
+                ),
+            ],
+        ),
+    ] {
+        let surface = surface_of(&scene_with(fields, json!({ "time_s": time_s })));
+        for ((x, z), (height_m, slope_x, slope_z)) in places.into_iter().zip(points) {
+            let point = surface.at(x, z);
+            assert!(
+                (point.height_m - height_m).abs() < 1e-12,
+                "{time_s}: {point:?}"
+            );
+            let off = (point.slope - DVec2::new(slope_x, slope_z)).length();
+            assert!(off < 1e-11, "{time_s}: {point:?}");
+        }
+    }
+}
+
+/// What does not depend on time is kept: a sea that was computed at another moment first is the same to the bit.
+#[test]
+fn a_kept_sea_is_the_same() {
+    let mut resolved = ResolvedScene::bare(scene_of(json!({ "spreading": "elfouhaily" })));
+    let first = Surface::of(&resolved);
+    resolved.scene.time_s = 3.7;
+    let alone = surface_of(&resolved.scene);
+    assert!(Surface::of(&resolved) == alone);
+    assert!(first != alone);
+    // Grids of two moments, and less than 64² pairs of waves.
+    let grids = 2 * 64 * 64 * 8;
+    assert!((grids + 1..grids + 64 * 64 * 48).contains(&resolved.kept.bytes()));
 }
