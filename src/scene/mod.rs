@@ -29,6 +29,7 @@ mod strict;
 pub mod types;
 pub mod validate;
 mod validate_output;
+pub mod water_map;
 pub mod waves;
 
 pub use dials::{Dial, DialKind, DialValue, DialWord, MethodChoice};
@@ -36,4 +37,5 @@ pub use error::{Issue, IssueKind, SceneError};
 pub use quality::Quality;
 pub use resolve::{ResolvedScene, resolve};
 pub use types::*;
+pub use water_map::WaterMapOutput;
 pub use waves::*;
