@@ -53,6 +53,13 @@ pub(super) fn with_flux(warning: Warning, flux_w: [f64; 3]) -> Warning {
 
 /// All warnings that can be found before rendering.
 pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warning> {
+    if facts.output.is_water_map() {
+        let of_water = smoothed_waves(facts).into_iter();
+        return of_water
+            .chain(seas_without_waves(facts, &resolved.scene))
+            .chain(coarse_water_map(facts))
+            .collect();
+    }
     let meshes = &resolved.meshes;
     let blocked = Blocked::new(facts, meshes);
     let mut all = Vec::new();
@@ -345,6 +352,21 @@ fn idle_obstacles(facts: &SceneFacts) -> Vec<Warning> {
         )
     })
     .collect()
+}
+
+/// A map of the water whose texels are too far apart for its shortest wave: between them it shows other waves than there are.
+fn coarse_water_map(facts: &SceneFacts) -> Option<Warning> {
+    let texel_m = facts.output.water_map?.texel_m().max_element();
+    let shortest_m = facts.water.surface.shortest_wave_m();
+    (texel_m > 0.5 * shortest_m).then(|| {
+        warning(
+            "water_map_coarse",
+            format!(
+                "texels are {texel_m:.4} m apart, more than half the shortest wave of {shortest_m:.4} m: each value is that of its texel's centre, but they do not show that wave"
+            ),
+            "/output",
+        )
+    })
 }
 
 fn from_below(light: &BeamSet) -> Option<Warning> {

@@ -34,6 +34,7 @@ pub mod types;
 pub mod validate;
 mod validate_obstacles;
 mod validate_output;
+pub mod water_map;
 pub mod waves;
 
 pub use dials::{Dial, DialKind, DialValue, DialWord, MethodChoice};
@@ -45,4 +46,5 @@ pub use height_field::{
 pub use quality::Quality;
 pub use resolve::{Assets, ResolvedScene, resolve};
 pub use types::*;
+pub use water_map::WaterMapOutput;
 pub use waves::*;

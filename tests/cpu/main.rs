@@ -90,4 +90,5 @@ mod truth_disk;
 #[path = "../support/truths.rs"]
 mod truths;
 mod tuning;
+mod water_map;
 mod waves;

@@ -61,4 +61,5 @@ mod tiles;
 #[path = "../support/truths.rs"]
 mod truths;
 mod view;
+mod water_maps;
 mod wide_sums;
