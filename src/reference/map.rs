@@ -148,7 +148,7 @@ impl<'a, const K: usize> Counter<'a, K> {
         let scene = &resolved.scene;
         let map = FloorMap::of(scene)?;
         let occluders = Occluders::of(resolved, map.origin_m)?;
-        let surface = Surface::refined(resolved, REFINEMENT).recentred(map.origin_m);
+        let surface = Surface::refined(resolved, REFINEMENT)?.recentred(map.origin_m);
         check_surface(&surface)?;
         let size_m = map.size_m();
         let mut targets = vec![Target {

@@ -96,6 +96,19 @@ impl Bounds {
     }
 }
 
+/// Largest magnitudes of the third differences of coefficients, which repeat after `size`: xxx, xxz, xzz, zzz.
+pub(super) fn third_differences(coefficients: &[f64], [width, height]: [usize; 2]) -> [f64; 4] {
+    let row = |z: usize| padded(&coefficients[z % height * width..][..width]);
+    let found = (0..height).into_par_iter().map(|z| {
+        let mut sweep = Sweep::of(width, DVec2::ONE, Slopes::default());
+        let rows = [0, 1, 2, 3].map(|i| row(z + i));
+        sweep.differences(rows.each_ref().map(Vec::as_slice));
+        sweep.most()
+    });
+    let [.., xxx, xxz, xzz, zzz] = found.reduce(Most::default, Most::joined).differences;
+    [xxx, xxz, xzz, zzz]
+}
+
 /// Unit vector of a direction.
 fn direction(i: usize) -> DVec2 {
     DVec2::from_angle(TAU * i as f64 / DIRECTIONS as f64)
@@ -268,17 +281,17 @@ fn block(row: &[f64], first: usize) -> &[f64; LANES + 3] {
 }
 
 /// The spline at the middle one of three coefficients.
-fn at_sample([a, b, c]: [f64; 3]) -> f64 {
+pub(super) fn at_sample([a, b, c]: [f64; 3]) -> f64 {
     (a + c) * (1.0 / 6.0) + b * (2.0 / 3.0)
 }
 
 /// The spline half-way between the middle two of four coefficients.
-fn between([a, b, c, d]: [f64; 4]) -> f64 {
+pub(super) fn between([a, b, c, d]: [f64; 4]) -> f64 {
     (a + d) * (1.0 / 48.0) + (b + c) * (23.0 / 48.0)
 }
 
 /// Its derivative there, per step.
-fn slope_between([a, b, c, d]: [f64; 4]) -> f64 {
+pub(super) fn slope_between([a, b, c, d]: [f64; 4]) -> f64 {
     (d - a) * 0.125 + (c - b) * 0.625
 }
 

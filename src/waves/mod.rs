@@ -5,6 +5,7 @@
 //! - `sines`, `trochoids`: waves with a formula;
 //! - `sea`, `ripples`: water that is computed on a grid (`grid`), and `spline`, the surface through the samples, with its `bounds`;
 //! - `spectrum`, `chance`, `clock`, `fourier`: what a sea is made of: variances, random numbers, phases, and the sum of its waves;
+//! - `choppy`: a sea whose points move to the sides as well;
 //! - `harmonics`: the modes of a basin, added up on a grid.
 //!
 //! To add a kind: a file of its own, and a line where `surface` collects them.
@@ -12,6 +13,7 @@
 
 mod bounds;
 mod chance;
+mod choppy;
 mod clock;
 mod fourier;
 mod grid;

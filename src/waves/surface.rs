@@ -12,7 +12,7 @@ use super::trochoids::Trochoids;
 use super::{ripples, sea};
 use crate::kept::Key;
 use crate::physics::refraction;
-use crate::scene::{ResolvedScene, Scene, Wave};
+use crate::scene::{ResolvedScene, Scene, SceneError, Wave};
 
 /// Height and slope of the water at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,21 +89,23 @@ impl Grid {
         resolved: &ResolvedScene,
         index: usize,
         refinement: u32,
-        compute: impl FnOnce(u32) -> Computed,
-    ) -> Self {
-        let kept = resolved
-            .kept
-            .get_or(key(&resolved.scene, index, refinement), || {
-                let computed = compute(refinement);
+        compute: impl FnOnce(u32) -> Result<Computed, SceneError>,
+    ) -> Result<Self, SceneError> {
+        let key = key(&resolved.scene, index, refinement);
+        let kept = match resolved.kept.get::<Computed>(&key) {
+            Some(kept) => kept,
+            None => {
+                let computed = compute(refinement)?;
                 let bytes = size_of_val(computed.spline.coefficients()) as u64;
-                (computed, bytes)
-            });
-        Self {
+                resolved.kept.put(key, computed, bytes)
+            }
+        };
+        Ok(Self {
             spline: kept.spline.clone(),
             shortest_wave_m: kept.shortest_wave_m,
             description: kept.description.clone(),
             slope_lost: (index, kept.slope_lost),
-        }
+        })
     }
 }
 
@@ -132,13 +134,19 @@ fn within(most: u32, refinement: u32, samples: u32) -> u32 {
 impl Surface {
     /// The surface of a scene at its `time_s`; the origin is that of the scene. Water on a grid that was computed before is taken from
     /// [`ResolvedScene::kept`].
-    pub fn of(resolved: &ResolvedScene) -> Self {
+    ///
+    /// # Errors
+    /// A sea that is too choppy at this moment.
+    pub fn of(resolved: &ResolvedScene) -> Result<Self, SceneError> {
         Self::refined(resolved, 1)
     }
 
     /// The same with `refinement` times as many samples along the sides of grids, so that their splines miss less of what they stand for;
     /// for references. Of a grid that would have more than 4096 samples along a side, the refinement is smaller.
-    pub fn refined(resolved: &ResolvedScene, refinement: u32) -> Self {
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn refined(resolved: &ResolvedScene, refinement: u32) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let waves = scene.water.waves.iter().enumerate();
         let grids = waves.filter_map(|(index, wave)| match wave {
@@ -146,22 +154,22 @@ impl Surface {
             Wave::Spectrum(waves) => {
                 let refinement = within(MAX_REFINED, refinement, waves.samples);
                 Some(Grid::of(resolved, index, refinement, |refinement| {
-                    sea::computed(waves, resolved, refinement)
+                    sea::computed(waves, index, resolved, refinement)
                 }))
             }
             Wave::Ripples(waves) => {
                 // Mirror images double the sides.
                 let refinement = within(MAX_REFINED, refinement, 2 * waves.samples);
                 Some(Grid::of(resolved, index, refinement, |refinement| {
-                    ripples::heights(waves, scene, refinement).into()
+                    Ok(ripples::heights(waves, scene, refinement).into())
                 }))
             }
         });
-        Self {
+        Ok(Self {
             sines: Sines::of(scene),
             trochoids: Trochoids::of(scene),
-            grids: grids.collect(),
-        }
+            grids: grids.collect::<Result<_, _>>()?,
+        })
     }
 
     /// The same surface with (x, z) = (0, 0) moved to `origin_m`.

@@ -57,7 +57,7 @@ fn the_gpu_has_the_surface_of_the_cpu() {
         });
         scene["output"] = json!({ "kind": "view", "width": 96, "height": 72, "format": "exr", "layers": ["depth"] });
         let resolved = scene_files::scene(scene);
-        let surface = Surface::of(&resolved);
+        let surface = Surface::of(&resolved).unwrap();
         let frame = harness::render(&resolved);
         let step_m = 4.2 / 72.0;
         let mut highest_m: f64 = 0.0;
