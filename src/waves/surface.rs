@@ -144,6 +144,11 @@ impl Surface {
     /// The same with `refinement` times as many samples along the sides of grids, so that their splines miss less of what they stand for;
     /// for references. Of a grid that would have more than 4096 samples along a side, the refinement is smaller.
     ///
+    /// Of waves of four samples, the shortest that a sea may have, a refinement of 4 misses 7·10⁻⁵ of the mean square slope, one of 2
+    /// 1.2·10⁻³. Measured at seas of 128 samples over a floor at 1.5 m, maps then differ from those of a refinement of 16 by 5·10⁻⁵
+    /// (relative L1) if the shortest waves have 6.4 samples, and by 1.5·10⁻⁴ if they have four; with a refinement of 2 by 3·10⁻⁴ and
+    /// 1.4·10⁻³.
+    ///
     /// # Errors
     /// As [`of`](Self::of).
     pub fn refined(resolved: &ResolvedScene, refinement: u32) -> Result<Self, SceneError> {

@@ -16,6 +16,8 @@ fn waters() -> Vec<(&'static str, Value)> {
         "kind": "spectrum", "model": "jonswap", "wind_speed_m_s": 4, "fetch_m": 5000, "wind_direction_deg": 40,
         "tile_m": 8, "samples": 128, "min_wavelength_m": 0.4, "seed": 3
     });
+    let mut choppy = sea.clone();
+    choppy["choppiness"] = json!(0.7);
     let ripples = json!({
         "kind": "ripples", "min_m": [-1.6, -1.2], "max_m": [1.6, 1.2], "samples": 160,
         "drops": [
@@ -31,6 +33,7 @@ fn waters() -> Vec<(&'static str, Value)> {
         ("sea", json!([sea])),
         ("ripples", json!([ripples])),
         ("all", json!([ripples, sine, gerstner, sea])),
+        ("choppy sea", json!([choppy])),
     ]
 }
 
