@@ -49,11 +49,12 @@ docs: deps
 # Seconds that each fuzz target runs.
 FUZZ_SECONDS ?= 60
 
-# Fuzz the readers of scenes and meshes; inputs that break them are kept in fuzz/artifacts. The first build takes minutes.
+# Fuzz the readers of scenes, meshes and fields; inputs that break them are kept in fuzz/artifacts. The first build takes minutes.
 # cargo-fuzz requests coverage by an unstable compiler flag: hence RUSTC_BOOTSTRAP. No sanitizer: our code has no unsafe blocks.
 fuzz: fuzz-deps
 	$(CARGO) run --release --locked --example fuzz_seeds -- fuzz/corpus
 	RUSTC_BOOTSTRAP=1 $(CARGO) fuzz run --sanitizer none obj -- -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=16384
+	RUSTC_BOOTSTRAP=1 $(CARGO) fuzz run --sanitizer none field -- -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=16384
 	RUSTC_BOOTSTRAP=1 $(CARGO) fuzz run --sanitizer none scene -- -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=16384
 
 fuzz-deps: deps

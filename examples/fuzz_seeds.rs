@@ -1,6 +1,6 @@
-//! Writes the seeds of fuzzing: the project's scenes, the scenes of the hard cases, one scene per method, and meshes. `make fuzz` runs it.
+//! Writes the seeds of fuzzing: the project's scenes, the scenes of the hard cases, one scene per method, meshes, and files of numbers. `make fuzz` runs it.
 //!
-//! Usage: `fuzz_seeds FOLDER`; files go to `FOLDER/scene` and `FOLDER/obj`.
+//! Usage: `fuzz_seeds FOLDER`; files go to `FOLDER/scene`, `FOLDER/obj` and `FOLDER/field`.
 
 use std::error::Error;
 use std::path::Path;
@@ -109,6 +109,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::write(objs.join(name), text)?;
     }
     std::fs::copy("scenes/meshes/box.obj", objs.join("box"))?;
+    let fields = Path::new(&folder).join("field");
+    std::fs::create_dir_all(&fields)?;
+    for entry in std::fs::read_dir("tests/fixtures/fields")? {
+        let path = entry?.path();
+        std::fs::copy(&path, fields.join(entry_name(&path)))?;
+    }
     Ok(())
 }
 

@@ -144,6 +144,14 @@ pub struct Limits {
         global = true
     )]
     pub mesh_store_bytes: u64,
+    /// Host memory for uploaded assets (files of heights), bytes. An upload that would exceed it is refused.
+    #[arg(
+        long,
+        env = "CAUSTICA_ASSET_STORE_BYTES",
+        default_value_t = 1_073_741_824,
+        global = true
+    )]
+    pub asset_store_bytes: u64,
 }
 
 impl Default for Limits {
@@ -156,6 +164,7 @@ impl Default for Limits {
             max_lights: 64,
             max_waves: 256,
             mesh_store_bytes: 1_073_741_824,
+            asset_store_bytes: 1_073_741_824,
         }
     }
 }

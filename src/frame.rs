@@ -16,6 +16,8 @@ pub enum FrameKind {
     View,
     /// Irradiance on a receiver, by texel.
     IrradianceMap,
+    /// Height and slope of the water, by texel.
+    WaterMap,
 }
 
 /// One layer: rows from the top (views) or from min z (maps), `channels` values per pixel.
@@ -36,7 +38,8 @@ pub struct Frame {
     pub width: u32,
     /// Pixels or texels along y (or z).
     pub height: u32,
-    /// The requested layers: a view has those named in the scene, an irradiance map has [`LayerName::Irradiance`] only.
+    /// The requested layers: a view has those named in the scene, an irradiance map has [`LayerName::Irradiance`] only, a map of
+    /// the water [`LayerName::Water`].
     pub layers: BTreeMap<LayerName, Layer>,
     /// The camera of a view.
     pub projection: Option<Projection>,

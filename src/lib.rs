@@ -12,7 +12,7 @@
 //! ```
 //!
 //! 1. [`scene::Scene::from_json`] reads JSON strictly: unknown fields are errors, and every error has a JSON pointer.
-//!    [`methods::resolve()`] checks ranges and turns mesh ids into [`mesh::Mesh`]es.
+//!    [`methods::resolve()`] checks ranges and turns mesh ids into [`mesh::Mesh`]es, and ids of height fields into [`fields::Field`]s.
 //! 2. [`facts::SceneFacts`] holds what decides which work is needed: the water's surface, the beam sets that light the receivers, the
 //!    rectangle of water that each beam set passes through (its window), and what the camera sees of the floor. Its coordinates are
 //!    relative to the visible region, so that f32 is as accurate far from the origin as near it.
@@ -66,6 +66,7 @@
 //! | [`waves`] | the water's surface |
 //! | [`scene`] | what a request may contain: types, ranges, parsing, validation |
 //! | [`kept`] | computed results that may serve again, within a budget of bytes |
+//! | [`fields`] | reading arrays of numbers: NPY, EXR, 16-bit PNG |
 //! | [`mesh`] | reading OBJ, repairs with a report, ray hierarchy |
 //! | [`graph`] | passes, slots, scopes and the planner's walk: generic, without water or wgpu calls |
 //! | [`gpu`] | device, kernels, buffers, timing; knows nothing of water |
@@ -83,6 +84,7 @@ pub mod calibration;
 pub mod cli;
 pub mod config;
 pub mod facts;
+pub mod fields;
 pub mod frame;
 pub mod gpu;
 pub mod gpu_queue;

@@ -268,8 +268,8 @@ pub struct Warning {
 
 impl Warning {
     /// Codes of warnings without a flux: either no light is lost (`sums_done_again`), or they concern dials, pixels, layers,
-    /// values of a file or what surfaces reflect, not light on its path. In a frame, all other warnings state the flux concerned.
-    pub const WITHOUT_FLUX: [&'static str; 16] = [
+    /// values of a file, the shape of the water or what surfaces reflect, not light on its path. In a frame, all other warnings state the flux concerned.
+    pub const WITHOUT_FLUX: [&'static str; 18] = [
         "calibrated_elsewhere",
         "half_clamped",
         "half_flushed",
@@ -282,10 +282,12 @@ impl Warning {
         "png_clipped",
         "png_layers_left_out",
         "png_negative",
+        "sea_without_waves",
         "setting_left_out",
         "sums_done_again",
         "target_error_not_met",
         "time_budget_not_met",
+        "waves_smoothed",
     ];
 
     /// A warning without pointer and flux.

@@ -1,6 +1,6 @@
 //! Writes `docs/accuracy.md` (the effect of each dial on the example scenes, measured by the program itself), `docs/level-maps.md`
-//! (the thesis's experiments with our measurements) and `docs/hard-cases.md`. The arguments `accuracy`, `level_maps` and `hard_cases`
-//! write only that page; names of scenes print the page's text about them.
+//! (the thesis's experiments with our measurements), `docs/hard-cases.md` and `docs/waves.md` (each kind of water). The arguments
+//! `accuracy`, `level_maps`, `hard_cases` and `waves` write only that page; names of scenes print the page's text about them.
 //!
 //! `make docs` runs it. Truths are kept in `out/truth`, so a second run only renders. Times are of the machine that it runs on, which
 //! the page names.
@@ -12,6 +12,7 @@ mod page;
 mod residual;
 mod scenes;
 mod targets;
+mod waves;
 
 use std::error::Error;
 use std::path::Path;
@@ -40,6 +41,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     if only.is_empty() || only.iter().any(|name| name == hard_cases::NAME) {
         eprintln!("{} …", hard_cases::NAME);
         hard_cases::write()?;
+    }
+    if only.is_empty() || only.iter().any(|name| name == waves::NAME) {
+        eprintln!("{} …", waves::NAME);
+        waves::write()?;
     }
     let is_whole_page = only.is_empty() || only.iter().any(|name| name == ACCURACY);
     let wanted = |name: &str| is_whole_page || only.iter().any(|o| o == name);

@@ -3,9 +3,10 @@
 use std::sync::{Arc, OnceLock};
 
 use caustica::config::Limits;
+use caustica::fields::{self, Field};
 use caustica::mesh::{Mesh, obj};
 use caustica::plan::{self, NothingCached, WarmCache};
-use caustica::scene::{Scene, SceneError};
+use caustica::scene::{Assets, Scene, SceneError};
 
 /// The mesh of every object: a tetrahedron.
 const MESH: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
@@ -17,11 +18,10 @@ pub(crate) fn check(bytes: &[u8]) {
         Err(error) => return says_why(&error),
     };
     reads_back(&scene);
-    let resolved =
-        match caustica::methods::resolve(scene, &Limits::default(), |_: &str| Some(mesh())) {
-            Ok(resolved) => resolved,
-            Err(error) => return says_why(&error),
-        };
+    let resolved = match caustica::methods::resolve(scene, &Limits::default(), Anything) {
+        Ok(resolved) => resolved,
+        Err(error) => return says_why(&error),
+    };
     let facts = match caustica::methods::facts(&resolved) {
         Ok(facts) => facts,
         Err(error) => return says_why(&error),
@@ -64,6 +64,34 @@ fn says_why(error: &SceneError) {
             "{issue:?}"
         );
     }
+}
+
+/// Has a file for every id.
+struct Anything;
+
+impl Assets for Anything {
+    fn mesh(&self, _: &str) -> Option<Arc<Mesh>> {
+        Some(mesh())
+    }
+
+    fn field(&self, _: &str) -> Option<Arc<Field>> {
+        Some(field())
+    }
+}
+
+/// The file of every height field: two frames of 8 × 8 samples.
+fn field() -> Arc<Field> {
+    static SHARED: OnceLock<Arc<Field>> = OnceLock::new();
+    let read = || {
+        let mut file = b"\x93NUMPY\x01\x00\x3d\x00".to_vec();
+        file.extend(b"{'descr': '<u2', 'fortran_order': False, 'shape': (2, 8, 8)}\n");
+        file.extend((0..256_u32).map(|i| (i * i % 251) as u8));
+        match fields::read(&file) {
+            Ok(field) => Arc::new(field),
+            Err(error) => panic!("{error}"),
+        }
+    };
+    Arc::clone(SHARED.get_or_init(read))
 }
 
 fn mesh() -> Arc<Mesh> {

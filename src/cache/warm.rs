@@ -1,5 +1,6 @@
 //! Requests to build level maps before a frame needs them.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -83,6 +84,7 @@ impl WarmUp {
         Ok(ResolvedScene {
             scene,
             meshes: vec![Arc::clone(mesh)],
+            fields: BTreeMap::new(),
             kept: Kept::default(),
         })
     }

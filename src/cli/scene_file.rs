@@ -1,4 +1,4 @@
-//! Reads a scene file and its meshes, which are named by paths relative to it.
+//! Reads a scene file, its meshes and its height fields, which are named by paths relative to it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,13 +8,14 @@ use std::path::Path;
 use super::error::CliError;
 use super::material_files;
 use super::scene_flags::SceneArgs;
-use crate::assets::MeshStore;
+use crate::assets::{FieldStore, MeshStore};
 use crate::config::Limits;
 use crate::methods;
+use crate::scene::height_field::MAX_FRAMES;
 use crate::scene::parse::read_json;
-use crate::scene::{ImageFormat, Issue, ResolvedScene, Scene, SceneError, overrides};
+use crate::scene::{ImageFormat, Issue, ResolvedScene, Scene, SceneError, Wave, overrides};
 
-/// Prefix of a mesh that is named by content id, not by path.
+/// Prefix of a file that is named by content id, not by path.
 const ID_PREFIX: &str = "blake3:";
 
 /// JSON pointer to the file format.
@@ -23,19 +24,19 @@ const FORMAT: &str = "/output/format";
 /// A scene that can be rendered.
 #[derive(Clone, Debug)]
 pub struct SceneFile {
-    /// The scene; meshes are named by content id.
+    /// The scene; meshes and height fields are named by content id.
     pub resolved: ResolvedScene,
     /// Notes about the meshes for the user, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// Reads the scene file, replaces fields, reads the meshes, and checks everything.
+/// Reads the scene file, replaces fields, reads the meshes and height fields, and checks everything.
 ///
 /// `format` is that of the output file's name; it takes precedence over the scene.
 ///
 /// # Errors
 ///
-/// [`CliError::Read`] for the scene file, [`CliError::Scene`] for all errors in it, unreadable meshes included,
+/// [`CliError::Read`] for the scene file, [`CliError::Scene`] for all errors in it, unreadable files included,
 /// [`CliError::Usage`] if `--format` contradicts `format`.
 pub fn load(
     args: &SceneArgs,
@@ -51,7 +52,7 @@ pub fn load(
     let from_bytes = || {
         let mut value = read_json(&bytes)?;
         overrides::apply(&mut value, &changes);
-        with_meshes(Scene::from_value(value)?, directory_of(path), limits)
+        with_files(Scene::from_value(value)?, directory_of(path), limits)
     };
     from_bytes().map_err(|error| CliError::Scene {
         file: path.display().to_string(),
@@ -91,8 +92,8 @@ fn format_change(
     }
 }
 
-/// Replaces paths of meshes by content ids.
-fn with_meshes(
+/// Replaces paths of meshes and height fields by content ids.
+fn with_files(
     mut scene: Scene,
     directory: &Path,
     limits: &Limits,
@@ -122,14 +123,58 @@ fn with_meshes(
             )),
         }
     }
+    let fields = FieldStore::new(limits);
+    issues.extend(read_fields(&mut scene, &fields, directory, limits));
     if issues.is_empty() {
-        let resolved = methods::resolve(scene, limits, &store)?;
+        let resolved = methods::resolve(scene, limits, (&store, &fields))?;
         return Ok(SceneFile { resolved, notes });
     }
     let others = methods::validate(&scene, limits).err();
     let others = others.map_or_else(Vec::new, |error| error.issues);
     issues.splice(0..0, others);
     Err(SceneError { issues })
+}
+
+/// Reads the files of all height fields, and replaces their paths by content ids; returns what is wrong.
+fn read_fields(
+    scene: &mut Scene,
+    store: &FieldStore,
+    directory: &Path,
+    limits: &Limits,
+) -> Vec<Issue> {
+    let mut issues = Vec::new();
+    let mut known: BTreeMap<String, Result<String, String>> = BTreeMap::new();
+    let waves = scene.water.waves.iter_mut().take(limits.max_waves);
+    for (index, wave) in waves.enumerate() {
+        let Wave::HeightField(field) = wave else {
+            continue;
+        };
+        // More are refused without reading them.
+        for (frame, name) in field.frames.iter_mut().take(MAX_FRAMES).enumerate() {
+            if name.is_empty() || name.starts_with(ID_PREFIX) {
+                continue;
+            }
+            let read = known
+                .entry(name.clone())
+                .or_insert_with(|| read_field(store, &directory.join(&*name)));
+            match read {
+                Ok(id) => name.clone_from(id),
+                Err(reason) => issues.push(Issue::invalid(
+                    format!("/water/waves/{index}/frames/{frame}"),
+                    format!("the file `{name}` cannot be used: {reason}"),
+                    "the path of an NPY, EXR or PNG file, relative to the scene file",
+                )),
+            }
+        }
+    }
+    issues
+}
+
+/// Reads a file of numbers. Returns its id.
+fn read_field(store: &FieldStore, path: &Path) -> Result<String, String> {
+    let bytes = fs::read(path).map_err(|error| error.to_string())?;
+    let inserted = store.insert(&bytes).map_err(|error| error.to_string())?;
+    Ok(inserted.field.id.clone())
 }
 
 /// Reads an OBJ file, and the MTL files it names. Returns the mesh's id.

@@ -218,14 +218,14 @@ pub(super) fn is_around(object: &ObjectFacts, position_m: DVec3) -> bool {
 
 /// A small rectangle of the water at rest.
 #[derive(Clone, Copy)]
-struct Place {
+pub(super) struct Place {
     at_m: DVec3,
     rect: Rect,
 }
 
 impl Place {
     /// Unit direction to a light above the water, and its distance, m.
-    fn to(&self, source: &Source) -> Option<(DVec3, f64)> {
+    pub(super) fn to(&self, source: &Source) -> Option<(DVec3, f64)> {
         match *source {
             Source::Sun { to_light } => Some((to_light, EVERYWHERE_M)),
             Source::Point { position_m } => {
@@ -237,7 +237,7 @@ impl Place {
     }
 
     /// Flux of a light of unit power onto it: m² for a sun, sr for a point light.
-    fn unit_flux(&self, source: &Source) -> f64 {
+    pub(super) fn unit_flux(&self, source: &Source) -> f64 {
         match *source {
             Source::Sun { to_light } => self.rect.size().element_product() * to_light.y,
             Source::Point { position_m } => rect_sr(self.rect, position_m),
@@ -256,7 +256,7 @@ pub(super) fn rect_sr(rect: Rect, position_m: DVec3) -> f64 {
 }
 
 /// A rectangle of the water at rest, divided evenly into `side` × `side` places.
-fn places(rect: Rect, side: u32) -> impl Iterator<Item = Place> {
+pub(super) fn places(rect: Rect, side: u32) -> impl Iterator<Item = Place> {
     let step_m = rect.size() / f64::from(side);
     (0..side * side).map(move |k| {
         let at = DVec2::new(f64::from(k % side), f64::from(k / side));

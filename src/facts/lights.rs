@@ -125,20 +125,25 @@ impl SkyFacts {
 
 impl LightsFacts {
     /// The lights in the air, and the sky. Which lights reach a receiver under water is found later, when the receivers are known
-    /// ([`SceneFacts::find_lights`]).
+    /// ([`SceneFacts::find_lights`]). A map of the water has none of them.
     pub(super) fn of(
         scene: &Scene,
         origin_m: DVec3,
         surface: &Surface,
     ) -> Result<Self, SceneError> {
-        let in_air = air_lights(&scene.lights, origin_m, surface)?;
-        let sky = SkyFacts::of(&scene.lights, scene.water.ior);
+        let lights: &[Light] = if scene.output.is_water_map() {
+            &[]
+        } else {
+            &scene.lights
+        };
+        let in_air = air_lights(lights, origin_m, surface)?;
+        let sky = SkyFacts::of(lights, scene.water.ior);
         Ok(Self {
             lit: Vec::new(),
             beam_sets: Vec::new(),
             in_air,
             sky,
-            white_radiance: white_radiance(scene, origin_m, surface, sky.radiance),
+            white_radiance: white_radiance(scene, lights, origin_m, surface, sky.radiance),
         })
     }
 
@@ -161,7 +166,7 @@ impl SceneFacts {
         }
         let only = match &resolved.scene.output {
             Output::IrradianceMap(map) => map.light,
-            Output::View(_) => None,
+            Output::View(_) | Output::WaterMap(_) => None,
         };
         for (index, light) in resolved.scene.lights.iter().enumerate() {
             let light_index = u32::try_from(index).unwrap_or(u32::MAX);
@@ -272,14 +277,14 @@ fn air_lights(
 
 fn white_radiance(
     scene: &Scene,
+    lights: &[Light],
     origin_m: DVec3,
     surface: &Surface,
     sky_radiance: [f64; 3],
 ) -> f64 {
     let mean = |rgb: [f64; 3]| rgb.iter().sum::<f64>() / 3.0;
     let floor_y_m = scene.floor.as_ref().map(|floor| -floor.depth_m);
-    let lit: f64 = scene
-        .lights
+    let lit: f64 = lights
         .iter()
         .filter_map(|light| Source::of(light, origin_m, surface))
         .map(|(source, power)| match source {

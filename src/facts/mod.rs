@@ -7,11 +7,13 @@
 //!   the receiver of a map;
 //! - `placement`: objects and the boxes of their level maps; `detail`: texels of those maps, by the object's size in the picture;
 //!   `source`: where light comes from; `window`, `lamp_window`: the water through which light reaches the receivers;
-//! - `warnings`: what is left out or sub-sampled; `unfollowed`, `blocked`: how much light that concerns;
+//! - `warnings`: what is left out or sub-sampled; `height_fields`: the same of water that users bring; `unfollowed`, `blocked`: how much
+//!   light that concerns;
 //! - `moment`: which facts change with time.
 
 mod blocked;
 mod detail;
+mod height_fields;
 mod lamp_window;
 pub mod lights;
 pub mod method;
@@ -29,7 +31,7 @@ use glam::{DVec2, DVec3};
 
 pub use self::lights::{BeamSet, LightsFacts, LitLight, MOST_LIGHTS, SkyFacts};
 pub use self::method::{MethodFacts, Product};
-pub use self::output::{CameraFacts, OutputFacts};
+pub use self::output::{CameraFacts, OutputFacts, WaterMapFacts};
 pub use self::receivers::{FloorFacts, FloorMap, ReceiverFacts};
 pub use self::water::{Band, WaterFacts};
 use crate::scene::{Output, Quality, Receiver, ResolvedScene, SceneError};
@@ -133,6 +135,12 @@ fn origin(resolved: &ResolvedScene) -> DVec3 {
             }),
             Receiver::Floor(_) => DVec2::ZERO,
         },
+        (Output::WaterMap(map), floor) => {
+            let corners = map.corners_m(floor.as_ref());
+            corners.map_or(DVec2::ZERO, |[low, high]| {
+                (DVec2::from(low) + DVec2::from(high)) * 0.5
+            })
+        }
         (Output::View(_), _) => scene.camera.as_ref().map_or(DVec2::ZERO, |camera| {
             let (_, target, _) = camera.pose();
             DVec2::new(target[0], target[2])

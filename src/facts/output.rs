@@ -1,4 +1,4 @@
-//! The requested output: a camera's view, or the irradiance of a receiver.
+//! The requested output: a camera's view, the irradiance of a receiver, or the water.
 
 use glam::{DVec2, DVec3};
 
@@ -8,23 +8,56 @@ use super::window::{self, Rect, Region};
 use crate::physics::sky;
 use crate::scene::projection::{Lens, Projection};
 use crate::scene::ranges::DEFAULT_MAP_SIDE;
-use crate::scene::{Camera, LayerName, Output, Receiver, Scene};
+use crate::scene::{Camera, Floor, LayerName, Output, Receiver, Scene, WaterMapOutput};
 
 /// The output of a scene.
 #[derive(Clone, Debug)]
 pub struct OutputFacts {
     /// The camera of a view.
     pub camera: Option<CameraFacts>,
-    /// Layers of a view; for an irradiance map only [`LayerName::Irradiance`].
+    /// Layers of a view; for an irradiance map only [`LayerName::Irradiance`], for a map of the water only [`LayerName::Water`].
     pub layers: Vec<LayerName>,
     /// The receiver of an irradiance map.
     pub receiver: Option<Receiver>,
+    /// The map of the water, if that is the output.
+    pub water_map: Option<WaterMapFacts>,
     /// The layer of that receiver: 0 is the nearest along the light. 0 for a view and for the floor.
     pub receiver_layer: u32,
     /// Sky irradiance that is added to an irradiance map of the floor, W/m².
     pub sky_w_m2: [f64; 3],
     /// Layers of objects that the scene requests; `quality.layers` of the facts is 1 where the output uses no more.
     pub requested_layers: u32,
+}
+
+/// A map of the water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaterMapFacts {
+    /// The rectangle it covers.
+    pub rect: Rect,
+    /// Texels along x.
+    pub width: u32,
+    /// Texels along z.
+    pub height: u32,
+}
+
+impl WaterMapFacts {
+    /// The map around the local origin `origin_m`; `None` without corners, which a validated scene has.
+    fn of(map: &WaterMapOutput, floor: Option<&Floor>, origin_m: DVec3) -> Option<Self> {
+        let [width, height] = map.size();
+        let [min, max] = map
+            .corners_m(floor)?
+            .map(|corner| DVec2::from(corner) - DVec2::new(origin_m.x, origin_m.z));
+        Some(Self {
+            rect: Rect { min, max },
+            width,
+            height,
+        })
+    }
+
+    /// Size of a texel along x and z, m.
+    pub fn texel_m(&self) -> DVec2 {
+        self.rect.size() / DVec2::new(f64::from(self.width), f64::from(self.height))
+    }
 }
 
 /// The camera.
@@ -61,15 +94,21 @@ impl OutputFacts {
                 )
             }
             Output::IrradianceMap(_) => (None, vec![LayerName::Irradiance]),
+            Output::WaterMap(_) => (None, vec![LayerName::Water]),
         };
         let map = match &scene.output {
             Output::IrradianceMap(map) => Some(map),
-            Output::View(_) => None,
+            Output::View(_) | Output::WaterMap(_) => None,
+        };
+        let water_map = match &scene.output {
+            Output::WaterMap(map) => WaterMapFacts::of(map, scene.floor.as_ref(), origin_m),
+            Output::View(_) | Output::IrradianceMap(_) => None,
         };
         Self {
             camera,
             layers,
             receiver: map.map(|map| map.receiver),
+            water_map,
             receiver_layer: map.map_or(0, |map| map.layer),
             sky_w_m2: [0.0; 3],
             requested_layers: scene.quality.layers,
@@ -86,6 +125,11 @@ impl OutputFacts {
         self.wants(LayerName::Radiance) || self.wants(LayerName::Irradiance)
     }
 
+    /// Whether the output is a map of the water, so that nothing needs light.
+    pub fn is_water_map(&self) -> bool {
+        self.layers == [LayerName::Water]
+    }
+
     /// Whether the output is the irradiance of the floor.
     pub fn is_floor_map(&self) -> bool {
         matches!(self.receiver, Some(Receiver::Floor(_)))
@@ -96,6 +140,7 @@ impl SceneFacts {
     /// Sizes the floor's map for the output, and computes the skies' irradiance on it.
     pub(super) fn size_floor_map(&mut self, output: &Output) {
         match output {
+            Output::WaterMap(_) => {}
             Output::View(_) => {
                 let region = match &self.output.camera {
                     Some(camera) if self.output.wants_irradiance() => {

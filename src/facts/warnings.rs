@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::blocked::{self, Blocked};
+use super::height_fields;
 use super::source::Source;
 use super::unfollowed;
 use super::window::Rect;
@@ -32,14 +33,18 @@ pub const WAVES_UNDERSAMPLED: &str = "waves_undersampled";
 /// Share of the mean square slope that may be missing without a warning.
 const MAX_SLOPE_LOST: f64 = 0.01;
 
-fn warning(code: &str, message: impl Into<String>, pointer: impl Into<String>) -> Warning {
+pub(super) fn warning(
+    code: &str,
+    message: impl Into<String>,
+    pointer: impl Into<String>,
+) -> Warning {
     Warning {
         pointer: Some(pointer.into()),
         ..Warning::new(code, message)
     }
 }
 
-fn with_flux(warning: Warning, flux_w: [f64; 3]) -> Warning {
+pub(super) fn with_flux(warning: Warning, flux_w: [f64; 3]) -> Warning {
     Warning {
         flux_w: Some(flux_w),
         ..warning
@@ -48,6 +53,13 @@ fn with_flux(warning: Warning, flux_w: [f64; 3]) -> Warning {
 
 /// All warnings that can be found before rendering.
 pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warning> {
+    if facts.output.is_water_map() {
+        let of_water = smoothed_waves(facts).into_iter();
+        return of_water
+            .chain(seas_without_waves(facts, &resolved.scene))
+            .chain(coarse_water_map(facts))
+            .collect();
+    }
     let meshes = &resolved.meshes;
     let blocked = Blocked::new(facts, meshes);
     let mut all = Vec::new();
@@ -58,7 +70,9 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     all.extend(left_out_by_method(facts, &blocked));
     all.extend(coarse_cells(facts));
     all.extend(smoothed_waves(facts));
+    all.extend(idle_obstacles(facts));
     all.extend(seas_without_waves(facts, &resolved.scene));
+    all.extend(height_fields::warnings(facts));
     let mut of_lights = Vec::new();
     for set in &facts.lights.beam_sets {
         of_lights.extend(from_below(set));
@@ -325,6 +339,34 @@ fn smoothed_waves(facts: &SceneFacts) -> Vec<Warning> {
             )
         })
         .collect()
+}
+
+/// Obstacles of basins that reflect nothing.
+fn idle_obstacles(facts: &SceneFacts) -> Vec<Warning> {
+    let idle = facts.water.surface.idle_obstacles();
+    idle.map(|(wave, place)| {
+        warning(
+            "obstacle_outside_basin",
+            "the object does not cut the water at rest where its basin has samples, so it reflects no ripples",
+            format!("/water/waves/{wave}/obstacles/{place}"),
+        )
+    })
+    .collect()
+}
+
+/// A map of the water whose texels are too far apart for its shortest wave: between them it shows other waves than there are.
+fn coarse_water_map(facts: &SceneFacts) -> Option<Warning> {
+    let texel_m = facts.output.water_map?.texel_m().max_element();
+    let shortest_m = facts.water.surface.shortest_wave_m();
+    (texel_m > 0.5 * shortest_m).then(|| {
+        warning(
+            "water_map_coarse",
+            format!(
+                "texels are {texel_m:.4} m apart, more than half the shortest wave of {shortest_m:.4} m: each value is that of its texel's centre, but they do not show that wave"
+            ),
+            "/output",
+        )
+    })
 }
 
 fn from_below(light: &BeamSet) -> Option<Warning> {

@@ -12,6 +12,7 @@ use utoipa::ToSchema;
 
 use super::decode::{self, Undecodable};
 use super::problem::Problem;
+use crate::fields::FieldError;
 use crate::gpu::GpuError;
 use crate::gpu_queue::JobError;
 use crate::image::EncodeError;
@@ -84,6 +85,8 @@ problem_kinds! {
     NotFound = NOT_FOUND, "not-found", "There is nothing at this address", Request;
     /// 404: no mesh of that id.
     UnknownMesh = NOT_FOUND, "unknown-mesh", "There is no such mesh", Request;
+    /// 404: no asset of that id.
+    UnknownAsset = NOT_FOUND, "unknown-asset", "There is no such asset", Request;
     /// 405: the route does not support the method; `Allow` lists those it supports.
     MethodNotAllowed = METHOD_NOT_ALLOWED, "method-not-allowed", "The method is not supported here", Request;
     /// 406: none of the representations is acceptable.
@@ -100,8 +103,12 @@ problem_kinds! {
     LimitExceeded = UNPROCESSABLE_ENTITY, "limit-exceeded", "The scene exceeds a limit", Request;
     /// 422: the scene names meshes that are not in the store and has no other error.
     MissingMesh = UNPROCESSABLE_ENTITY, "missing-mesh", "The scene names a mesh that is not stored", Request;
+    /// 422: the scene names assets that are not in the store and has no other error.
+    MissingAsset = UNPROCESSABLE_ENTITY, "missing-asset", "The scene names an asset that is not stored", Request;
     /// 422: the mesh cannot be used.
     InvalidMesh = UNPROCESSABLE_ENTITY, "invalid-mesh", "The mesh is not valid", Request;
+    /// 422: the file cannot be used.
+    InvalidAsset = UNPROCESSABLE_ENTITY, "invalid-asset", "The asset is not valid", Request;
     /// 422: the float64 reference cannot compute the requested output, or the output is dark, so that no relative error exists.
     NoTruth = UNPROCESSABLE_ENTITY, "no-truth", "There is no reference to compare with", Request;
     /// 422: the plan needs more GPU memory than is allowed.
@@ -122,6 +129,8 @@ problem_kinds! {
     ShuttingDown = SERVICE_UNAVAILABLE, "shutting-down", "The service is shutting down", Device;
     /// 507: the mesh store has no room.
     MeshStoreFull = INSUFFICIENT_STORAGE, "mesh-store-full", "The mesh store is full", Capacity;
+    /// 507: the asset store has no room.
+    AssetStoreFull = INSUFFICIENT_STORAGE, "asset-store-full", "The asset store is full", Capacity;
 }
 
 impl ProblemKind {
@@ -130,9 +139,9 @@ impl ProblemKind {
         matches!(self.reason(), Reason::Capacity | Reason::Device)
     }
 
-    /// Whether `Retry-After` is sent: not for a full mesh store, from which meshes have to be deleted first.
+    /// Whether `Retry-After` is sent: not for a full store, from which something has to be deleted first.
     pub fn sends_retry_after(self) -> bool {
-        self.retryable() && self != Self::MeshStoreFull
+        self.retryable() && !matches!(self, Self::MeshStoreFull | Self::AssetStoreFull)
     }
 }
 
@@ -154,6 +163,12 @@ pub enum ApiError {
     /// No mesh of that id.
     #[error("there is no mesh {id}; GET /v1/meshes lists those that are stored")]
     UnknownMesh {
+        /// Id asked for.
+        id: String,
+    },
+    /// No asset of that id.
+    #[error("there is no asset {id}; GET /v1/assets lists those that are stored")]
+    UnknownAsset {
         /// Id asked for.
         id: String,
     },
@@ -202,6 +217,9 @@ pub enum ApiError {
     /// The mesh is refused.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The file is refused.
+    #[error(transparent)]
+    Field(#[from] FieldError),
     /// The GPU queue returned an error.
     #[error(transparent)]
     Job(#[from] JobError),
@@ -233,6 +251,7 @@ impl ApiError {
             Self::InvalidQuery(_) => ProblemKind::InvalidQuery,
             Self::NotFound { .. } => ProblemKind::NotFound,
             Self::UnknownMesh { .. } => ProblemKind::UnknownMesh,
+            Self::UnknownAsset { .. } => ProblemKind::UnknownAsset,
             Self::MethodNotAllowed { .. } => ProblemKind::MethodNotAllowed,
             Self::NotAcceptable { .. } => ProblemKind::NotAcceptable,
             Self::BodyTooLarge { .. } => ProblemKind::BodyTooLarge,
@@ -241,6 +260,8 @@ impl ApiError {
             Self::Scene(error) => scene_kind(error),
             Self::Mesh(MeshError::StoreFull { .. }) => ProblemKind::MeshStoreFull,
             Self::Mesh(_) => ProblemKind::InvalidMesh,
+            Self::Field(FieldError::StoreFull { .. }) => ProblemKind::AssetStoreFull,
+            Self::Field(_) => ProblemKind::InvalidAsset,
             Self::Job(error) => job_kind(error),
             Self::StudyRunning => ProblemKind::QueueFull,
             Self::NoTruth(_) => ProblemKind::NoTruth,
@@ -324,6 +345,7 @@ fn scene_kind(error: &SceneError) -> ProblemKind {
         IssueKind::Invalid => ProblemKind::InvalidScene,
         IssueKind::LimitExceeded => ProblemKind::LimitExceeded,
         IssueKind::UnknownMesh => ProblemKind::MissingMesh,
+        IssueKind::UnknownAsset => ProblemKind::MissingAsset,
     }
 }
 

@@ -97,6 +97,8 @@ impl Metrics {
         gauge!("caustica_level_map_cache_bytes").set(cache.bytes as f64);
         gauge!("caustica_level_map_cache_entries").set(cache.entries as f64);
         gauge!("caustica_level_map_cache_budget_bytes").set(cache.budget_bytes as f64);
+        gauge!("caustica_asset_store_bytes").set(state.fields().bytes() as f64);
+        gauge!("caustica_asset_store_budget_bytes").set(state.limits().asset_store_bytes as f64);
         gauge!("caustica_queue_depth").set(state.queue().depth() as f64);
         gauge!("caustica_queue_capacity").set((settings.waiting + 1) as f64);
         gauge!("caustica_ready").set(f64::from(u8::from(state.obstacles().is_empty())));
@@ -181,6 +183,16 @@ fn describe() {
         "caustica_level_map_cache_budget_bytes",
         Unit::Bytes,
         "Maximum memory of cached level maps."
+    );
+    describe_gauge!(
+        "caustica_asset_store_bytes",
+        Unit::Bytes,
+        "Memory of uploaded assets."
+    );
+    describe_gauge!(
+        "caustica_asset_store_budget_bytes",
+        Unit::Bytes,
+        "Maximum memory of uploaded assets."
     );
     describe_gauge!("caustica_queue_depth", "Jobs that wait or run.");
     describe_gauge!("caustica_queue_capacity", "Jobs that may wait or run.");

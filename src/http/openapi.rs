@@ -28,6 +28,7 @@ use crate::scene::{MethodChoice, Scene};
     tags(
         (name = "render", description = "Rendering of scenes."),
         (name = "meshes", description = "Meshes that scenes refer to."),
+        (name = "assets", description = "Files of numbers that scenes refer to: surfaces of water."),
         (name = "service", description = "Health, metrics, limits, contract.")
     ),
     components(schemas(Problem, Scene))

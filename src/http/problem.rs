@@ -7,6 +7,7 @@ use utoipa::openapi::{ContentBuilder, Header, Ref, RefOr, Response, ResponseBuil
 use utoipa::{IntoResponses, PartialSchema as _, ToSchema};
 
 use super::error::{ApiError, ProblemKind, Reason};
+use crate::fields::FieldError;
 use crate::gpu_queue::JobError;
 use crate::mesh::MeshError;
 use crate::render::RenderError;
@@ -76,6 +77,11 @@ impl Problem {
                 needed_bytes,
                 budget_bytes,
                 ..
+            })
+            | ApiError::Field(FieldError::StoreFull {
+                needed_bytes,
+                budget_bytes,
+                ..
             }) => {
                 problem.needed_bytes = Some(*needed_bytes);
                 problem.budget_bytes = Some(*budget_bytes);
@@ -134,20 +140,26 @@ problem_sets! {
     UploadProblems = [
         InvalidQuery, MalformedBody, BodyTooLarge, UnsupportedMediaType, UnsupportedEncoding, InvalidMesh, Internal, DeadlinePassed, MeshStoreFull,
     ];
+    /// Of routes about one asset.
+    AssetProblems = [UnknownAsset, Internal, DeadlinePassed];
+    /// Of the upload of an asset.
+    AssetUploadProblems = [
+        MalformedBody, BodyTooLarge, UnsupportedMediaType, UnsupportedEncoding, InvalidAsset, Internal, DeadlinePassed, AssetStoreFull,
+    ];
     /// Of the plan.
     PlanProblems = [
         MalformedJson, MalformedBody, BodyTooLarge, UnsupportedMediaType, UnsupportedEncoding, InvalidScene, LimitExceeded, MissingMesh,
-        OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory, ShuttingDown,
+        MissingAsset, OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory, ShuttingDown,
     ];
     /// Of the render.
     RenderProblems = [
         MalformedJson, MalformedBody, NotAcceptable, BodyTooLarge, UnsupportedMediaType, UnsupportedEncoding, InvalidScene, LimitExceeded,
-        MissingMesh, OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory, ShuttingDown,
+        MissingMesh, MissingAsset, OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory, ShuttingDown,
     ];
     /// Of the study of accuracy.
     AccuracyProblems = [
         MalformedJson, MalformedBody, NotAcceptable, BodyTooLarge, UnsupportedMediaType, UnsupportedEncoding, InvalidScene, LimitExceeded,
-        MissingMesh, NoTruth, OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory,
+        MissingMesh, MissingAsset, NoTruth, OverBudget, QueueFull, Internal, DeadlinePassed, NotReady, DeviceLost, OutOfGpuMemory,
         ShuttingDown,
     ];
     /// Of the readiness probe.

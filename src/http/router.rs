@@ -19,7 +19,7 @@ use super::decode::decode;
 use super::error::ApiError;
 use super::observe::observe;
 use super::openapi::document;
-use super::routes::{accuracy, docs, health, info, meshes, metrics, plan, render};
+use super::routes::{accuracy, assets, docs, health, info, meshes, metrics, plan, render};
 use super::state::AppState;
 
 /// The documented routes: the list from which both the router and the contract are made.
@@ -33,6 +33,8 @@ pub(super) fn api() -> OpenApiRouter<AppState> {
         .routes(routes!(info::info))
         .routes(routes!(meshes::list, meshes::upload))
         .routes(routes!(meshes::inspect, meshes::forget))
+        .routes(routes!(assets::list, assets::upload))
+        .routes(routes!(assets::inspect, assets::forget))
         .routes(routes!(plan::plan))
         .routes(routes!(render::render))
         .routes(routes!(accuracy::accuracy))

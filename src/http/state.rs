@@ -8,8 +8,9 @@ use tokio::sync::Semaphore;
 
 use super::error::ApiError;
 use super::metrics::Metrics;
-use crate::assets::MeshStore;
+use crate::assets::{FieldStore, MeshStore};
 use crate::config::{CorsOrigin, Limits, RenderConfig};
+use crate::fields::Field;
 use crate::gpu_queue::GpuQueue;
 use crate::kept::Kept;
 use crate::mesh::Mesh;
@@ -26,6 +27,7 @@ pub struct AppState {
 struct Inner {
     queue: GpuQueue,
     meshes: MeshStore,
+    fields: FieldStore,
     kept: Kept,
     limits: Limits,
     render: RenderConfig,
@@ -35,12 +37,13 @@ struct Inner {
 }
 
 impl AppState {
-    /// A service on a running queue, with an empty mesh store.
+    /// A service on a running queue, with empty stores.
     pub fn new(queue: GpuQueue, limits: Limits, render: RenderConfig) -> Self {
         Self {
             inner: Arc::new(Inner {
                 queue,
                 meshes: MeshStore::new(&limits),
+                fields: FieldStore::new(&limits),
                 kept: Kept::default(),
                 limits,
                 render,
@@ -74,6 +77,11 @@ impl AppState {
     /// Uploaded meshes.
     pub fn meshes(&self) -> &MeshStore {
         &self.inner.meshes
+    }
+
+    /// Uploaded files of numbers.
+    pub fn fields(&self) -> &FieldStore {
+        &self.inner.fields
     }
 
     /// Limits of a request.
@@ -133,6 +141,10 @@ impl AppState {
 impl Assets for &AppState {
     fn mesh(&self, id: &str) -> Option<Arc<Mesh>> {
         self.meshes().get(id)
+    }
+
+    fn field(&self, id: &str) -> Option<Arc<Field>> {
+        self.fields().get(id)
     }
 
     fn kept(&self) -> Kept {

@@ -66,7 +66,9 @@ pub enum EncodeError {
         layers: usize,
     },
     /// The frame has no layer that PNG can show.
-    #[error("PNG shows layer radiance (or irradiance of a map), the frame holds {present} only")]
+    #[error(
+        "PNG shows layer radiance (or irradiance or water of a map), the frame holds {present} only"
+    )]
     NothingToShow {
         /// The layers of the frame.
         present: String,
@@ -102,7 +104,7 @@ pub enum EncodeError {
 /// Writes a frame as `encoding` says, with `metadata` inside.
 ///
 /// PNG: layer radiance (or the irradiance of a map), exposed by `frame.stats.exposure.scale`, tone-mapped, sRGB; the
-/// exposure in stops is part of that scale and `encoding.exposure_ev` is not applied again. EXR: every layer, linear and
+/// exposure in stops is part of that scale and `encoding.exposure_ev` is not applied again; of a map of the water, its normals. EXR: every layer, linear and
 /// unexposed. Both contain the scene if the frame does.
 ///
 /// # Errors

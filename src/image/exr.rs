@@ -12,7 +12,7 @@ use ::exr::prelude::{
 use glam::DMat4;
 use half::f16;
 
-use crate::frame::{Frame, Layer};
+use crate::frame::{Frame, FrameKind, Layer};
 use crate::scene::{Encoding, ExrPixel};
 use crate::stats::Warning;
 
@@ -26,6 +26,9 @@ pub const MEDIA_TYPE: &str = "image/x-exr";
 
 /// Linear light with Rec. 709 primaries, as the Color Interop Forum names it.
 pub const COLOR_INTEROP_ID: &str = "lin_rec709_scene";
+
+/// Values that are no colours, likewise.
+pub const DATA_INTEROP_ID: &str = "data";
 
 /// Rec. ITU-R BT.709 primaries and white point D65, CIE xy.
 const REC_709: Chromaticities = Chromaticities {
@@ -74,7 +77,13 @@ pub fn encode(
 
     let size = Vec2(frame.width as usize, frame.height as usize);
     let mut shared = ImageAttributes::new(IntegerBounds::from_dimensions(size));
-    shared.chromaticities = Some(REC_709);
+    let is_light = frame.kind != FrameKind::WaterMap;
+    shared.chromaticities = is_light.then_some(REC_709);
+    let color_interop_id = if is_light {
+        COLOR_INTEROP_ID
+    } else {
+        DATA_INTEROP_ID
+    };
     shared.pixel_aspect = frame
         .projection
         .as_ref()
@@ -85,7 +94,7 @@ pub fn encode(
         (SCENE_HASH_KEY, Some(metadata.scene_hash.as_str())),
         (STATS_KEY, Some(stats.as_str())),
         (SCENE_KEY, scene.as_deref()),
-        ("colorInteropID", Some(COLOR_INTEROP_ID)),
+        ("colorInteropID", Some(color_interop_id)),
     ];
     for (key, value) in texts {
         let Some(value) = value else { continue };

@@ -30,11 +30,11 @@ const IRRADIANCE_MAP: LayerFormat = LayerFormat {
 pub fn format_in(frame: &Frame, name: LayerName) -> LayerFormat {
     match frame.kind {
         FrameKind::IrradianceMap => IRRADIANCE_MAP,
-        FrameKind::View => format_of(name),
+        FrameKind::View | FrameKind::WaterMap => format_of(name),
     }
 }
 
-/// How `name` appears in a file of a view.
+/// How `name` appears in a file of a view or of a map of the water.
 pub fn format_of(name: LayerName) -> LayerFormat {
     match name {
         LayerName::Radiance => LayerFormat {
@@ -78,6 +78,12 @@ pub fn format_of(name: LayerName) -> LayerFormat {
             exr_channels: &["irradiance.R", "irradiance.G", "irradiance.B"],
             follows_exr_pixel: false,
             holds: "irradiance: on the surface seen, W/m2, 0 where none is",
+        },
+        LayerName::Water => LayerFormat {
+            word: "water",
+            exr_channels: &["height", "slope.x", "slope.z"],
+            follows_exr_pixel: false,
+            holds: "height: of the water above its level at rest, m; slope: its derivatives along x and z",
         },
     }
 }

@@ -1,7 +1,7 @@
 //! Image files: writes the linear layers of a frame as PNG or EXR, and reads them back.
 //!
-//! `encode` selects the format; `layers` names the layers in a file and checks them; `tone` has the tone curves; `png` and `exr`
-//! write; `exr_header` makes an EXR header reproducible; `metadata` selects the statistics that a file contains; `decode` reads
+//! `encode` selects the format; `layers` names the layers in a file and checks them; `tone` has the tone curves, `normal_map` the codes of normals; `png` and
+//! `exr` write; `exr_header` makes an EXR header reproducible; `metadata` selects the statistics that a file contains; `decode` reads
 //! both formats for comparisons.
 //!
 //! The same frame gives the same bytes: no file contains a time of day, a duration or the state of a cache.
@@ -12,6 +12,7 @@ pub mod exr;
 mod exr_header;
 pub mod layers;
 pub mod metadata;
+mod normal_map;
 pub mod png;
 pub mod tone;
 

@@ -23,6 +23,7 @@ use crate::stages::maps::MapLayout;
 use crate::stages::points::{POINT_IRRADIANCE, POINTS, band_rows, size};
 use crate::stages::shade::RADIANCE;
 use crate::stages::sums::ENERGY;
+use crate::stages::water_map::WATER_MAP;
 use crate::stages::{Caustica, Pass, Slot};
 use crate::stats::{AbsentPass, ChosenDials, Warning};
 
@@ -164,6 +165,9 @@ pub fn awaited(facts: &SceneFacts, wanted: Wanted) -> BTreeSet<&'static Slot> {
 
 /// The slots that hold the layers of the output.
 pub fn awaited_layers(facts: &SceneFacts) -> BTreeSet<&'static Slot> {
+    if facts.output.is_water_map() {
+        return BTreeSet::from([&WATER_MAP]);
+    }
     if facts.output.camera.is_none() {
         return BTreeSet::from([match facts.method.product {
             Product::PointIrradiance => &POINT_IRRADIANCE,
@@ -178,6 +182,7 @@ pub fn awaited_layers(facts: &SceneFacts) -> BTreeSet<&'static Slot> {
             LayerName::SeenDepth | LayerName::Normal | LayerName::Position => &POINTS,
             LayerName::Albedo => &VISIBLE_ALBEDO,
             LayerName::Irradiance => &POINT_IRRADIANCE,
+            LayerName::Water => &WATER_MAP,
         })
         .collect()
 }
@@ -342,7 +347,7 @@ pub fn readback_bytes(facts: &SceneFacts) -> u64 {
     let beside = differences_beside(facts);
     beside
         + match size(facts) {
-            Some([width, height]) if is_made_at_points(facts) => {
+            Some([width, height]) if is_made_in_bands(facts) => {
                 let layers = awaited_layers(facts).into_iter();
                 let texel = layers.map(bytes_per_point).max().unwrap_or(0);
                 texel * u64::from(width) * u64::from(band_rows(width, height))
@@ -352,9 +357,11 @@ pub fn readback_bytes(facts: &SceneFacts) -> u64 {
         }
 }
 
-/// Whether the output is read from points, band by band: a view, and a map of a method that finds the light at points.
-pub fn is_made_at_points(facts: &SceneFacts) -> bool {
-    facts.output.camera.is_some() || facts.method.product == Product::PointIrradiance
+/// Whether the output is made and read band by band: a view, a map of the water, and a map of a method that finds the light at points.
+pub fn is_made_in_bands(facts: &SceneFacts) -> bool {
+    facts.output.camera.is_some()
+        || facts.output.is_water_map()
+        || facts.method.product == Product::PointIrradiance
 }
 
 /// Bytes per pixel of a slot that layers are read from.
@@ -377,6 +384,13 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
             reason: reason.to_owned(),
         });
     };
+    if facts.output.is_water_map() {
+        add(
+            "light",
+            "the output is a map of the water: lights, objects and quality have no effect on it",
+        );
+        return absent;
+    }
     if !facts.attenuates() {
         add(
             "attenuation",

@@ -37,7 +37,7 @@ fn check(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), Refe
 fn counted(scene: &Scene) -> Result<impl Iterator<Item = &Light>, ReferenceError> {
     let only = match &scene.output {
         Output::IrradianceMap(output) => output.light,
-        Output::View(_) => None,
+        Output::View(_) | Output::WaterMap(_) => None,
     };
     if let Some(index) = only
         && !matches!(

@@ -151,6 +151,8 @@ fn key(resolved: &ResolvedScene, settings: &TruthSettings) -> String {
     scene.quality = Quality::default();
     let mut most_points = 0;
     match &mut scene.output {
+        // It has no truth, because it has no light.
+        Output::WaterMap(_) => {}
         Output::View(output) => {
             most_points = settings.most_points;
             *output = ViewOutput {

@@ -95,6 +95,11 @@ pub enum ReferenceError {
         "the reference counts light on the floor only: output.kind must be \"irradiance_map\" and output.receiver \"floor\""
     )]
     NotAFloorMap,
+    /// The output is a map of the water.
+    #[error(
+        "the output is a map of the water, which has no light that could be compared; output.kind \"view\" or \"irradiance_map\" is accepted"
+    )]
+    WaterMap,
     /// There is no receiver.
     #[error("the scene has no floor; the reference needs one")]
     NoFloor,

@@ -132,6 +132,9 @@ pub fn truth(
     cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Result<Truth, ReferenceError> {
     settings.check()?;
+    if resolved.scene.output.is_water_map() {
+        return Err(ReferenceError::WaterMap);
+    }
     let kept = settings
         .disk
         .as_ref()
@@ -142,6 +145,7 @@ pub fn truth(
     }
     let started = Instant::now();
     let mut truth = match &resolved.scene.output {
+        Output::WaterMap(_) => Err(ReferenceError::WaterMap),
         Output::View(_) => view::view(resolved, settings, progress, cancelled),
         Output::IrradianceMap(output) => match output.receiver {
             Receiver::Floor(_) => floor(resolved, settings, progress, cancelled),

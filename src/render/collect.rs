@@ -18,6 +18,7 @@ use crate::stages::maps::MapLayout;
 use crate::stages::points::{POINT_IRRADIANCE, POINTS};
 use crate::stages::shade::RADIANCE;
 use crate::stages::sums::ENERGY_TERMS;
+use crate::stages::water_map::WATER_MAP;
 use crate::stages::{Slot, estimate, light, term};
 use crate::stats::{EnergyAccount, PlaneStats, Warning};
 
@@ -317,7 +318,7 @@ fn closure(account: &EnergyAccount) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The layers of a view (or of a map computed at points), filled band by band.
+/// The layers of a view (or of a map that is made in bands), filled band by band.
 pub(super) struct PointLayers<'a> {
     facts: &'a SceneFacts,
     width: u32,
@@ -414,6 +415,8 @@ impl<'a> PointLayers<'a> {
             fill(layers.get_mut(&LayerName::Albedo), &three);
         } else if *source == POINT_IRRADIANCE {
             fill(layers.get_mut(&LayerName::Irradiance), &three);
+        } else if *source == WATER_MAP {
+            fill(layers.get_mut(&LayerName::Water), &three);
         }
     }
 

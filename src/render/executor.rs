@@ -100,7 +100,7 @@ impl Renderer {
         if plan.wanted == Wanted::Points {
             self.run_points(job, slots, &mut result)?;
         } else if plan.wanted == Wanted::Frame {
-            if plan::is_made_at_points(facts) {
+            if plan::is_made_in_bands(facts) {
                 let mut wide = sums.wide;
                 // Sets that no pass traced have no sums.
                 wide.resize(facts.lights.beam_sets.len(), false);

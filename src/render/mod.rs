@@ -267,6 +267,7 @@ impl Renderer {
         let kind = match &resolved.scene.output {
             Output::View(_) => FrameKind::View,
             Output::IrradianceMap(_) => FrameKind::IrradianceMap,
+            Output::WaterMap(_) => FrameKind::WaterMap,
         };
         let is_embedded = resolved.scene.output.encoding().embed_scene;
         // As requested, like the hash: `resolved` may have chosen dials.

@@ -29,7 +29,7 @@ impl Prepared {
     /// When the scene cannot be rendered, whatever the GPU.
     pub fn new(resolved: ResolvedScene) -> Result<Self, SceneError> {
         let started = Instant::now();
-        let facts = if chooses_dials(&resolved.scene.quality) {
+        let facts = if chooses_dials(&resolved.scene) {
             methods::facts(&resolved)?
         } else {
             methods::facts_with_warnings(&resolved)?
@@ -104,6 +104,6 @@ impl Prepared {
 
     /// Whether `quality` requests an error or a time, so that the renderer chooses the dials.
     pub fn asks_for_dials(&self) -> bool {
-        chooses_dials(&self.resolved.scene.quality)
+        chooses_dials(&self.resolved.scene)
     }
 }

@@ -8,7 +8,7 @@ use crate::plan::{self, NothingCached, Wanted, WarmCache};
 use crate::scene::ResolvedScene;
 use crate::stats::{ChosenDials, Warning};
 use crate::tuning::choose::{self, Prospect};
-use crate::tuning::{cost, ladder};
+use crate::tuning::{chooses_dials, cost, ladder};
 
 /// A scene whose dials were chosen.
 pub(super) struct Tuned {
@@ -19,7 +19,8 @@ pub(super) struct Tuned {
 }
 
 impl Renderer {
-    /// The scene with dials chosen for the error or time that `quality` requests; `None` if it requests neither.
+    /// The scene with dials chosen for the error or time that `quality` requests; `None` if it requests neither, or if no dial has an
+    /// effect on the output.
     pub(super) fn tuned(
         &mut self,
         prepared: &Prepared,
@@ -27,6 +28,9 @@ impl Renderer {
     ) -> Result<Option<Tuned>, RenderError> {
         let resolved = prepared.resolved();
         let quality = &resolved.scene.quality;
+        if !chooses_dials(&resolved.scene) {
+            return Ok(None);
+        }
         let chosen = if let Some(target) = quality.target_error {
             self.for_error(resolved, target, cancel)?
         } else if let Some(budget_ms) = quality.time_budget_ms {

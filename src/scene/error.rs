@@ -27,6 +27,8 @@ pub enum IssueKind {
     LimitExceeded,
     /// A mesh id that is not in the store. Once the mesh is uploaded, the same scene is accepted.
     UnknownMesh,
+    /// An asset id that is not in the store. Once the file is uploaded, the same scene is accepted.
+    UnknownAsset,
 }
 
 /// One finding.

@@ -3,11 +3,12 @@
 use super::strict::quoted;
 
 /// Suffix of a field name and the unit it stands for; longer suffixes first.
-const UNITS: [(&str, &str); 9] = [
+const UNITS: [(&str, &str); 10] = [
     ("_w_m2_sr", "W/(m² sr)"),
     ("_w_m2", "W/m²"),
     ("_w_sr", "W/sr"),
     ("_per_m", "1/m"),
+    ("_per_s", "1/s"),
     ("_deg", "degrees"),
     ("_ev", "stops"),
     ("_cells", "cells"),

@@ -11,6 +11,7 @@ use utoipa::{PartialSchema, ToSchema};
 use super::dials;
 use super::quality::Quality;
 use super::types::{IrradianceMapOutput, Output, ViewOutput};
+use super::water_map::WaterMapOutput;
 
 /// A field that may be replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,13 +35,7 @@ pub struct Field {
 pub fn fields() -> Vec<Field> {
     let mut fields = fields_of::<Quality>("/quality");
     fields.sort_by(|a, b| a.name.cmp(&b.name));
-    let mut outputs = fields_of::<ViewOutput>("/output");
-    for field in fields_of::<IrradianceMapOutput>("/output") {
-        match outputs.iter_mut().find(|known| known.name == field.name) {
-            Some(known) => merge(known, field),
-            None => outputs.push(field),
-        }
-    }
+    let mut outputs = merged(&outputs());
     outputs.sort_by(|a, b| a.name.cmp(&b.name));
     for field in &mut fields {
         if outputs.iter().any(|output| output.name == field.name) {
@@ -51,30 +46,70 @@ pub fn fields() -> Vec<Field> {
     fields
 }
 
-/// Merges the fields of the same name of two kinds of output.
-fn merge(known: &mut Field, other: Field) {
-    if known.help != other.help {
-        known.help = format!("View: {} Irradiance map: {}", known.help, other.help);
-    }
-    for word in other.words {
-        if !known.words.contains(&word) {
-            known.words.push(word);
+/// The name of each kind of output, and its fields.
+fn outputs() -> [(&'static str, Vec<Field>); 3] {
+    [
+        ("View", fields_of::<ViewOutput>("/output")),
+        (
+            "Irradiance map",
+            fields_of::<IrradianceMapOutput>("/output"),
+        ),
+        ("Water map", fields_of::<WaterMapOutput>("/output")),
+    ]
+}
+
+/// The fields of several kinds of output, each with its name. Those of the same name become one; where their descriptions differ, it has
+/// each of them after the names of its kinds.
+fn merged(kinds: &[(&str, Vec<Field>)]) -> Vec<Field> {
+    let mut all: Vec<Field> = Vec::new();
+    for (_, fields) in kinds {
+        for field in fields {
+            match all.iter_mut().find(|known| known.name == field.name) {
+                None => all.push(field.clone()),
+                Some(known) => {
+                    let more = field.words.iter();
+                    let more = more.filter(|word| !known.words.contains(word)).cloned();
+                    let more: Vec<String> = more.collect();
+                    known.words.extend(more);
+                }
+            }
         }
     }
+    for field in &mut all {
+        let mut texts: Vec<(Vec<&str>, &str)> = Vec::new();
+        for (kind, fields) in kinds {
+            let Some(own) = fields.iter().find(|own| own.name == field.name) else {
+                continue;
+            };
+            match texts.iter_mut().find(|(_, help)| *help == own.help) {
+                Some((names, _)) => names.push(kind),
+                None => texts.push((vec![kind], &own.help)),
+            }
+        }
+        if texts.len() > 1 {
+            let texts = texts.iter();
+            let texts = texts.map(|(names, help)| format!("{}: {help}", names.join(", ")));
+            field.help = texts.collect::<Vec<_>>().join(" ");
+        }
+    }
+    all
 }
+
+/// Pointer to the kind of the output.
+const KIND: &str = "/output/kind";
 
 /// Pointer to the choice of the method.
 pub const METHOD: &str = "/quality/method";
 
 /// Replaces the values at the given pointers, in order; later ones win.
 ///
-/// A missing `output` becomes a view. Another method drops the dials of the previous one. Setting a dial turns a method given by
+/// A missing `output` becomes a view. Another kind of output drops the fields that it does not have. Another method drops the dials of the previous one. Setting a dial turns a method given by
 /// name into an object. A place that cannot be reached, because a value on the path is not an object, is left unchanged: reading
 /// the scene will refuse it.
 pub fn apply(value: &mut Value, overrides: &[(String, String)]) {
     let known = fields();
     // Kinds first: they decide which other fields are accepted, and a missing output needs one.
-    let is_kind = |pointer: &str| pointer == "/output/kind" || pointer == METHOD;
+    let is_kind = |pointer: &str| pointer == KIND || pointer == METHOD;
     let (kinds, others): (Vec<_>, Vec<_>) =
         overrides.iter().partition(|(pointer, _)| is_kind(pointer));
     for (pointer, text) in kinds.into_iter().chain(others) {
@@ -89,7 +124,27 @@ pub fn apply(value: &mut Value, overrides: &[(String, String)]) {
             Some(method) if is_dial(pointer) => dials::as_object(method),
             _ => {}
         }
+        if pointer == KIND {
+            leave_fields_of(value, &replacement);
+        }
         replace(value, pointer, replacement);
+    }
+}
+
+/// Drops the fields of `output` that another kind of output than its own does not have. An unknown kind leaves all.
+fn leave_fields_of(value: &mut Value, kind: &Value) {
+    let Some(Value::Object(output)) = value.get_mut("output") else {
+        return;
+    };
+    if output.get("kind") == Some(kind) {
+        return;
+    }
+    let is_of_kind = |(_, fields): &(&str, Vec<Field>)| {
+        let mut words = fields.iter().filter(|field| field.name == "kind");
+        words.any(|field| field.words.iter().any(|word| kind == word))
+    };
+    if let Some((_, fields)) = outputs().into_iter().find(is_of_kind) {
+        output.retain(|name, _| fields.iter().any(|field| field.name == *name));
     }
 }
 

@@ -88,10 +88,24 @@ pub const DROP_RADIUS: Range = Range::new(1e-4, 1e4, "m");
 pub const DROP_HEIGHT: Range = Range::new(-100.0, 100.0, "m");
 /// `damping_per_s`.
 pub const DAMPING: Range = Range::new(0.0, 1e3, "1/s");
-/// Most samples of all spectra and basins of a scene: 64 MiB on the GPU.
+/// `scale_m` and `slope_scale` of a height field.
+pub const FIELD_SCALE: Range = Range::new(-1e6, 1e6, "");
+/// `range_m` and `slope_range` of a height field.
+pub const FIELD_RANGE: Range = Range::new(-1e5, 1e5, "");
+/// `rest_m` of a height field.
+pub const REST_HEIGHT: Range = Range::new(-1e6, 1e6, "m");
+/// `sample_m` of a height field.
+pub const SAMPLE_DISTANCE: Range = Range::new(1e-5, 1e3, "m");
+/// `rim_m` of a height field: its other limits depend on the samples.
+pub const TILE_OR_LESS: Range = Range::new(0.0, 1e4, "m");
+/// `frames_per_s` of a height field.
+pub const FRAME_RATE: Range = Range::new(1e-6, 1e6, "1/s");
+/// Most samples of all spectra, basins and height fields of a scene: 64 MiB on the GPU.
 pub const MAX_GRID_SAMPLES: u64 = 1 << 24;
 /// Most standing waves of all drops of a scene: a few seconds.
 pub const MAX_SWINGS: u64 = 1 << 28;
+/// Most samples × steps of all basins with obstacles of a scene, from their first drops to the time of the frame: some ten seconds.
+pub const MAX_SAMPLE_STEPS: f64 = 8e9;
 /// Most drops of one basin.
 pub const MAX_DROPS: usize = 256;
 /// `floor.depth_m`.

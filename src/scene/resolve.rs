@@ -1,20 +1,25 @@
-//! Looks up the meshes of a valid scene by their ids, so that it can be rendered.
+//! Looks up the meshes and other files of a valid scene by their ids, so that it can be rendered.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::error::{Issue, IssueKind, SceneError};
+use super::field_frames::{self, FieldFrames};
 use super::types::Scene;
 use crate::config::Limits;
+use crate::fields::Field;
 use crate::kept::Kept;
 use crate::mesh::Mesh;
 
-/// A validated scene with the meshes of its objects: everything that a frame needs.
+/// A validated scene with the meshes of its objects and the files of its waves: everything that a frame needs.
 #[derive(Clone, Debug)]
 pub struct ResolvedScene {
     /// The scene as requested.
     pub scene: Scene,
     /// The mesh of each object, in the order of `scene.objects`.
     pub meshes: Vec<Arc<Mesh>>,
+    /// The frames of each height field, by index into `scene.water.waves`.
+    pub fields: BTreeMap<usize, Arc<FieldFrames>>,
     /// What is computed from the scene and may serve again: for another frame, or other dials.
     pub kept: Kept,
 }
@@ -23,6 +28,12 @@ pub struct ResolvedScene {
 pub trait Assets {
     /// The mesh with this id.
     fn mesh(&self, id: &str) -> Option<Arc<Mesh>>;
+
+    /// The file of numbers with this id. By default there is none.
+    fn field(&self, id: &str) -> Option<Arc<Field>> {
+        let _ = id;
+        None
+    }
 
     /// Where results are kept. By default nowhere beyond this scene.
     fn kept(&self) -> Kept {
@@ -37,11 +48,12 @@ impl<F: Fn(&str) -> Option<Arc<Mesh>>> Assets for F {
 }
 
 impl ResolvedScene {
-    /// A valid scene without objects, which refers to nothing.
+    /// A valid scene without objects and height fields, which refers to nothing.
     pub fn bare(scene: Scene) -> Self {
         Self {
             scene,
             meshes: Vec::new(),
+            fields: BTreeMap::new(),
             kept: Kept::default(),
         }
     }
@@ -60,12 +72,12 @@ impl ResolvedScene {
     }
 }
 
-/// Validates a scene and looks up the mesh of every object.
+/// Validates a scene and looks up the mesh of every object and the files of every height field.
 ///
 /// # Errors
 ///
-/// All findings of [`Scene::validate`] and every unknown mesh together. [`SceneError::kind`] is [`IssueKind::UnknownMesh`] only
-/// if nothing else is wrong.
+/// All findings of [`Scene::validate`], every unknown mesh, and what is wrong with the files of height fields together. [`SceneError::kind`] is
+/// [`IssueKind::UnknownMesh`] or [`IssueKind::UnknownAsset`] only if nothing else is wrong.
 pub fn resolve(
     scene: Scene,
     limits: &Limits,
@@ -84,10 +96,16 @@ pub fn resolve(
             None => issues.push(unknown_mesh(index, &object.mesh)),
         }
     }
+    let fields = if scene.water.waves.len() <= limits.max_waves {
+        field_frames::find(&scene, &assets, &mut issues)
+    } else {
+        BTreeMap::new()
+    };
     if issues.is_empty() {
         Ok(ResolvedScene {
             scene,
             meshes,
+            fields,
             kept: assets.kept(),
         })
     } else {

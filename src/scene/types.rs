@@ -8,6 +8,7 @@ use super::parse::{inner, integer, integer_of, optional_integer, rotation, tagge
 use super::quality::Quality;
 use super::ranges::{Integer, Layer, LightIndex, MapSide, PngBits, ReceiverIndex, ViewSide};
 use super::strict::carry;
+use super::water_map::WaterMapOutput;
 use super::waves::Wave;
 
 /// A scene: water, receivers, lights, a camera and the output to make.
@@ -105,6 +106,13 @@ pub struct Floor {
     #[serde(default = "default_floor_albedo")]
     #[schema(min_items = 3, max_items = 3)]
     pub albedo: [f64; 3],
+}
+
+impl Floor {
+    /// Lower and upper corner, (x, z) in m.
+    pub fn corners_m(&self) -> [[f64; 2]; 2] {
+        [-0.5, 0.5].map(|half| [0, 1].map(|axis| self.center_m[axis] + half * self.size_m[axis]))
+    }
 }
 
 fn default_floor_albedo() -> [f64; 3] {
@@ -375,6 +383,8 @@ pub enum Output {
     View(ViewOutput),
     /// `kind = "irradiance_map"`: irradiance on a receiver, by texel.
     IrradianceMap(IrradianceMapOutput),
+    /// `kind = "water_map"`: height and slope of the water over a rectangle.
+    WaterMap(WaterMapOutput),
 }
 
 impl Default for Output {
@@ -388,9 +398,10 @@ impl<'de> Deserialize<'de> for Output {
         tagged(
             deserializer,
             None,
-            &["view", "irradiance_map"],
+            &["view", "irradiance_map", "water_map"],
             |kind, value| match kind {
                 "irradiance_map" => inner(value).map(Self::IrradianceMap),
+                "water_map" => inner(value).map(Self::WaterMap),
                 _ => inner(value).map(Self::View),
             },
         )
@@ -401,6 +412,11 @@ impl Output {
     /// Whether it is an irradiance map of a mesh.
     pub fn is_object_map(&self) -> bool {
         matches!(self, Self::IrradianceMap(map) if matches!(map.receiver, Receiver::Object(_)))
+    }
+
+    /// Whether it is a map of the water, which has no light in it.
+    pub fn is_water_map(&self) -> bool {
+        matches!(self, Self::WaterMap(_))
     }
 
     /// Whether it is a view of the camera.
@@ -424,6 +440,14 @@ impl Output {
                 png_bits: o.png_bits,
                 exposure_ev: o.exposure_ev,
                 tone_curve: o.tone_curve,
+                exr_pixel: ExrPixel::Float,
+                embed_scene: o.embed_scene,
+            },
+            Self::WaterMap(o) => Encoding {
+                format: o.format,
+                png_bits: o.png_bits,
+                exposure_ev: 0.0,
+                tone_curve: ToneCurve::default(),
                 exr_pixel: ExrPixel::Float,
                 embed_scene: o.embed_scene,
             },
@@ -495,7 +519,7 @@ impl Default for ViewOutput {
     }
 }
 
-fn yes() -> bool {
+pub(super) fn yes() -> bool {
     true
 }
 
@@ -503,7 +527,7 @@ fn yes() -> bool {
     clippy::trivially_copy_pass_by_ref,
     reason = "serde hands over a reference"
 )]
-fn is_true(value: &bool) -> bool {
+pub(super) fn is_true(value: &bool) -> bool {
     *value
 }
 
@@ -597,7 +621,7 @@ pub struct IrradianceMapOutput {
     pub embed_scene: bool,
 }
 
-fn default_map_format() -> ImageFormat {
+pub(super) fn default_map_format() -> ImageFormat {
     ImageFormat::Exr
 }
 
@@ -645,7 +669,7 @@ pub struct Encoding {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ImageFormat {
-    /// sRGB, exposed and tone-mapped.
+    /// sRGB, exposed and tone-mapped; of a water map, the normals.
     #[default]
     Png,
     /// Scene-linear, unexposed, ZIP.
@@ -703,6 +727,9 @@ pub enum LayerName {
     Albedo,
     /// Irradiance on the surface seen, W/m²; EXR irradiance.R irradiance.G irradiance.B.
     Irradiance,
+    /// Height of the water, m, and its slopes along x and z; EXR height slope.x slope.z. Only of a water map: no layer of a view.
+    #[serde(skip)]
+    Water,
 }
 
 /// Declares the one-word type of a `kind` field. (`tt`, not `literal`: the schema's derive macro cannot read a `literal`.)
@@ -725,6 +752,7 @@ kinds! {
     GerstnerKind = "gerstner",
     SpectrumKind = "spectrum",
     RipplesKind = "ripples",
+    HeightFieldKind = "height_field",
     SunKind = "sun",
     PointKind = "point",
     SkyKind = "sky",
@@ -732,4 +760,5 @@ kinds! {
     OrthographicKind = "orthographic",
     ViewKind = "view",
     IrradianceMapKind = "irradiance_map",
+    WaterMapKind = "water_map",
 }

@@ -4,12 +4,13 @@ use glam::DVec3;
 
 use super::error::SceneError;
 use super::findings::Findings;
+use super::height_field;
 use super::parse::ROTATION_LENGTH_TOLERANCE;
 use super::quality::Quality;
 use super::ranges::{self, number};
 use super::types::{Camera, Floor, Intrinsics, Light, Object, Output, Scale, Scene, Water};
-use super::validate_output;
 use super::waves::{GerstnerWave, Ripples, SpectrumWaves, Wave};
+use super::{validate_obstacles, validate_output};
 use crate::config::Limits;
 
 /// Smallest distance from a camera to its target, m.
@@ -33,6 +34,7 @@ impl Scene {
         let mut findings = Findings::default();
         findings.number("/time_s", self.time_s, &ranges::TIME);
         water(&mut findings, &self.water, limits);
+        validate_obstacles::obstacles(&mut findings, self);
         if let Some(floor_there) = &self.floor {
             floor(&mut findings, floor_there);
         }
@@ -111,6 +113,7 @@ fn water(findings: &mut Findings, water: &Water, limits: &Limits) {
             Wave::Gerstner(wave) => gerstner(findings, wave, &at),
             Wave::Spectrum(waves) => spectrum(findings, waves, &at),
             Wave::Ripples(waves) => ripples(findings, waves, &at),
+            Wave::HeightField(waves) => height_field::check(findings, waves, &at),
         }
     }
 }

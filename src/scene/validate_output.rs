@@ -6,6 +6,7 @@ use super::strict::quoted;
 use super::types::{
     Floor, ImageFormat, IrradianceMapOutput, LayerName, Light, Output, Receiver, Scene, ViewOutput,
 };
+use super::water_map::WaterMapOutput;
 use crate::config::Limits;
 
 pub(super) fn output(findings: &mut Findings, scene: &Scene, limits: &Limits) {
@@ -21,7 +22,26 @@ pub(super) fn output(findings: &mut Findings, scene: &Scene, limits: &Limits) {
                 Receiver::Object(index) => mesh_map(findings, scene, output, index, limits),
             }
         }
+        Output::WaterMap(output) => water_map(findings, scene, output, limits),
     }
+}
+
+fn water_map(findings: &mut Findings, scene: &Scene, output: &WaterMapOutput, limits: &Limits) {
+    findings.integer::<ranges::PngBits>("/output/png_bits", output.png_bits);
+    map_size(findings, [output.width, output.height], limits);
+    let missing = [("min_m", output.min_m), ("max_m", output.max_m)];
+    let missing = missing.iter().filter(|(_, corner)| corner.is_none());
+    if scene.floor.is_none() {
+        for (field, _) in missing {
+            findings.invalid(
+                format!("/output/{field}"),
+                format!("missing field `{field}`: the scene has no floor whose corner it could be"),
+                "both corners of the map, `min_m` and `max_m`, (x, z) in m; or a scene with a `floor`",
+            );
+        }
+    }
+    let given = [output.min_m, output.max_m];
+    corners(findings, given, output.corners_m(scene.floor.as_ref()));
 }
 
 fn view(findings: &mut Findings, scene: &Scene, output: &ViewOutput, limits: &Limits) {
@@ -182,18 +202,7 @@ fn floor_map(
     output: &IrradianceMapOutput,
     limits: &Limits,
 ) {
-    let mut is_sized = true;
-    for (pointer, side) in [
-        ("/output/width", output.width),
-        ("/output/height", output.height),
-    ] {
-        is_sized &= side.is_none_or(|side| findings.integer::<ranges::MapSide>(pointer, side));
-    }
-    if is_sized {
-        let side_of = |side: Option<u32>| side.unwrap_or(ranges::DEFAULT_MAP_SIDE);
-        let size = [side_of(output.width), side_of(output.height)];
-        pixels(findings, "/output", size, limits);
-    }
+    map_size(findings, [output.width, output.height], limits);
     match &scene.floor {
         Some(floor) => window(findings, floor, output),
         None => findings.invalid(
@@ -204,32 +213,65 @@ fn floor_map(
     }
 }
 
+/// Checks the numbers of texels along x and z.
+fn map_size(findings: &mut Findings, sides: [Option<u32>; 2], limits: &Limits) {
+    let mut is_sized = true;
+    for (pointer, side) in [("/output/width", sides[0]), ("/output/height", sides[1])] {
+        is_sized &= side.is_none_or(|side| findings.integer::<ranges::MapSide>(pointer, side));
+    }
+    if is_sized {
+        let size = sides.map(|side| side.unwrap_or(ranges::DEFAULT_MAP_SIDE));
+        pixels(findings, "/output", size, limits);
+    }
+}
+
 fn window(findings: &mut Findings, floor: &Floor, output: &IrradianceMapOutput) {
+    let [floor_min, floor_max] = floor.corners_m();
+    let min = output.min_m.unwrap_or(floor_min);
+    let max = output.max_m.unwrap_or(floor_max);
+    let given = [output.min_m, output.max_m];
+    let Some(named) = corners(findings, given, Some([min, max])) else {
+        return;
+    };
+    // Rounding errors are tolerated. A texel beside the floor would show light where there is no surface.
+    let hair = |axis: usize| 1e-9 * (floor_max[axis] - floor_min[axis]);
+    let leaves = |axis: usize| {
+        min[axis] < floor_min[axis] - hair(axis) || max[axis] > floor_max[axis] + hair(axis)
+    };
+    if leaves(0) || leaves(1) {
+        findings.invalid(
+            format!("/output/{named}"),
+            format!("the map from {min:?} to {max:?} m extends beyond the floor"),
+            format!("a map within the floor, which reaches from {floor_min:?} to {floor_max:?} m"),
+        );
+    }
+}
+
+/// Checks the corners that the scene gives, and the rectangle between the corners that then apply. Returns the field of a corner that
+/// the scene gives, if it gives one and all is well.
+fn corners(
+    findings: &mut Findings,
+    [given_min, given_max]: [Option<[f64; 2]>; 2],
+    applied: Option<[[f64; 2]; 2]>,
+) -> Option<&'static str> {
     let mut is_sound = true;
-    for (pointer, corner) in [
-        ("/output/min_m", output.min_m),
-        ("/output/max_m", output.max_m),
-    ] {
+    for (pointer, corner) in [("/output/min_m", given_min), ("/output/max_m", given_max)] {
         if let Some(corner) = corner {
             is_sound &= findings.numbers(pointer, &corner, &ranges::COORDINATE);
         }
     }
     // Report the corner that the scene gives.
-    let given = if output.max_m.is_some() {
-        "max_m"
-    } else {
-        "min_m"
+    let given = match (given_min, given_max) {
+        (_, Some(_)) => "max_m",
+        (Some(_), None) => "min_m",
+        (None, None) => return None,
     };
-    if !is_sound || (output.min_m.is_none() && output.max_m.is_none()) {
-        return;
-    }
-    let floor_min = [0, 1].map(|i| floor.center_m[i] - floor.size_m[i] / 2.0);
-    let floor_max = [0, 1].map(|i| floor.center_m[i] + floor.size_m[i] / 2.0);
-    let min = output.min_m.unwrap_or(floor_min);
-    let max = output.max_m.unwrap_or(floor_max);
+    let [min, max] = applied.filter(|_| is_sound)?;
     for axis in [0, 1] {
         let name = ["x", "z"][axis];
-        if max[axis] - min[axis] < ranges::EXTENT.min {
+        // The largest floor, too, has a map; rounding errors are tolerated.
+        let extents = ranges::EXTENT.min..=ranges::EXTENT.max * (1.0 + 1e-9);
+        if !extents.contains(&(max[axis] - min[axis])) {
             findings.invalid(
                 format!("/output/{given}/{axis}"),
                 format!(
@@ -237,23 +279,13 @@ fn window(findings: &mut Findings, floor: &Floor, output: &IrradianceMapOutput) 
                     min[axis], max[axis]
                 ),
                 format!(
-                    "`min_m` below `max_m`, by {} m or more",
-                    ranges::number(ranges::EXTENT.min)
+                    "`min_m` below `max_m`, by {} … {} m",
+                    ranges::number(ranges::EXTENT.min),
+                    ranges::number(ranges::EXTENT.max)
                 ),
             );
             is_sound = false;
         }
     }
-    // Rounding errors are tolerated. A texel beside the floor would show light where there is no surface.
-    let hair = |axis: usize| 1e-9 * (floor_max[axis] - floor_min[axis]);
-    let leaves = |axis: usize| {
-        min[axis] < floor_min[axis] - hair(axis) || max[axis] > floor_max[axis] + hair(axis)
-    };
-    if is_sound && (leaves(0) || leaves(1)) {
-        findings.invalid(
-            format!("/output/{given}"),
-            format!("the map from {min:?} to {max:?} m extends beyond the floor"),
-            format!("a map within the floor, which reaches from {floor_min:?} to {floor_max:?} m"),
-        );
-    }
+    is_sound.then_some(given)
 }

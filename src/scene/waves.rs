@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::height_field::HeightField;
 use super::parse::{inner, integer, tagged};
 use super::ranges::{BasinSamples, Seed, SpectrumSamples};
 use super::types::{GerstnerKind, RipplesKind, SineKind, SpectrumKind};
@@ -19,15 +20,18 @@ pub enum Wave {
     Spectrum(SpectrumWaves),
     /// `kind = "ripples"`.
     Ripples(Ripples),
+    /// `kind = "height_field"`.
+    HeightField(Box<HeightField>),
 }
 
 impl<'de> Deserialize<'de> for Wave {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let kinds = ["sine", "gerstner", "spectrum", "ripples"];
+        let kinds = ["sine", "gerstner", "spectrum", "ripples", "height_field"];
         tagged(deserializer, None, &kinds, |kind, value| match kind {
             "gerstner" => inner(value).map(Self::Gerstner),
             "spectrum" => inner(value).map(Self::Spectrum),
             "ripples" => inner(value).map(Self::Ripples),
+            "height_field" => inner(value).map(Self::HeightField),
             _ => inner(value).map(Self::Sine),
         })
     }
@@ -45,15 +49,20 @@ impl Wave {
     }
 
     /// Samples of the grid on which the waves are computed; 0 for waves with a formula. A basin with reflecting walls has its mirror images
-    /// on the grid.
+    /// on the grid, one with absorbing walls the water around it. Those of a height field are in its files; see [`super::resolve`].
     pub fn grid_samples(&self) -> u64 {
         match self {
-            Self::Sine(_) | Self::Gerstner(_) => 0,
+            Self::Sine(_) | Self::Gerstner(_) | Self::HeightField(_) => 0,
             Self::Spectrum(waves) => u64::from(waves.samples).saturating_pow(2),
-            Self::Ripples(waves) => match waves.walls {
-                Walls::Periodic => u64::from(waves.samples).saturating_pow(2),
-                Walls::Reflecting => (2 * u64::from(waves.samples)).saturating_pow(2),
-            },
+            Self::Ripples(waves) => {
+                let samples = u64::from(waves.samples);
+                let side = match waves.walls {
+                    Walls::Periodic => samples,
+                    Walls::Reflecting => 2 * samples,
+                    Walls::Absorbing => samples + 2 * waves.layer_samples() as u64,
+                };
+                side.saturating_pow(2)
+            }
         }
     }
 }
@@ -232,9 +241,14 @@ pub enum Spreading {
     Elfouhaily,
 }
 
-/// Ripples in a rectangular basin, solved by its modes: exact at any time.
+/// Ripples in a rectangular basin.
 ///
-/// Beyond reflecting walls the surface continues as a mirror image; a periodic basin repeats.
+/// Without obstacles the solution is exact at any time: between reflecting walls and in a periodic basin by its modes, with absorbing walls
+/// as part of open water. Beyond reflecting walls the surface continues as a mirror image, and a periodic basin repeats. Beyond absorbing
+/// walls it fades to flat water within an eighth of the longer side (at least 8 samples); further out the water is at rest.
+///
+/// With obstacles the waves are computed in steps of time, each 0.9 of the longest stable one, on the grid of the samples: h_tt + 2γ h_t =
+/// ∇·(c² ∇h) by finite differences of second order. Absorbing walls are then a perfectly matched layer where the surface fades.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ripples {
@@ -265,6 +279,16 @@ pub struct Ripples {
     /// How fast waves run. Default `finite_depth`.
     #[serde(default)]
     pub dispersion: RippleDispersion,
+    /// Objects that reflect the ripples, as indices into `objects`. Default none. They need `dispersion` = `shallow` and a floor: where
+    /// speed depends on the wavelength, the motion at a point depends on water further away, also behind the obstacle, and finite
+    /// differences do not hold.
+    ///
+    /// An obstacle is the cut of its mesh with the water at rest, taken down to the floor. Samples inside of a closed cut are not water, and
+    /// no water flows between samples that the cut separates, so that walls thinner than a sample reflect too. If the cut is open, nothing
+    /// is inside of it. The slope across the obstacle's rim is 0. Inside, hidden by the object, the surface is continued smoothly. Across
+    /// a wall thinner than about four samples it is steep.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub obstacles: Vec<u32>,
 }
 
 fn default_basin_samples() -> u32 {
@@ -273,7 +297,9 @@ fn default_basin_samples() -> u32 {
 
 /// A drop: at its time, a mound at rest is added to the surface, h = height · exp(−r²/(2 radius²)). What of it lies beyond a wall is folded
 /// back into the basin (periodic: enters at the opposite side). The water that it would add to the basin is taken from all of it, so that
-/// the mean height stays 0. A drop narrower than about two samples is not carried by them; `waves_smoothed` says how much is missing.
+/// the mean height stays 0. Through absorbing walls the water leaves, and nothing is folded or taken. What lies over an obstacle is left out.
+/// A drop narrower than about two samples is not carried by them (with obstacles it is widened to two, with the same water);
+/// `waves_smoothed` says how much is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RippleDrop {
@@ -298,6 +324,9 @@ pub enum Walls {
     Reflecting,
     /// What leaves at a side enters at the opposite one.
     Periodic,
+    /// What reaches a side leaves: the basin is a part of wider water. Without obstacles nothing comes back; of a wave number's waves that
+    /// have run four times as far as the basin's farthest corner, nothing is left. With obstacles less than 0.1 % of the energy comes back.
+    Absorbing,
 }
 
 /// Dispersion relation of ripples.

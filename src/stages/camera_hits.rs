@@ -96,6 +96,9 @@ pub(super) fn wanted_for_camera(facts: &SceneFacts) -> Result<String, String> {
             "a view of {} × {} pixels",
             camera.width, camera.height
         )),
+        None if facts.output.is_water_map() => {
+            Err("the output is a map of the water, which has no camera".to_owned())
+        }
         None => Err("the output is an irradiance map, which has no camera".to_owned()),
     }
 }

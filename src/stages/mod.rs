@@ -8,6 +8,7 @@
 //! | flux on receivers | `deposit`, `split`, `landed`, `irradiance`; shared by them: `light`, `receivers`, `maps`, `sums`, `term`, `queues` |
 //! | points that pixels see or texels lie at | `points`: the slot; `camera_hits` and `texel_points` fill it; `sky_and_air_lights`, `camera_irradiance`, `shade` |
 //! | the frame's estimate of its own error | `coarse_irradiance`, `estimate` |
+//! | the water as an output of its own | `water_map` |
 //! | reference planes | `reference_planes`: shared by methods that slice objects |
 //!
 //! Bindings are matched by name: a WGSL variable has the name of the slot it binds.
@@ -40,6 +41,7 @@ pub mod surface;
 pub mod term;
 pub mod texel_points;
 pub mod unfollowed;
+pub mod water_map;
 
 use crate::facts::SceneFacts;
 use crate::graph::{self, Program};
@@ -86,5 +88,5 @@ pub static AFTER_MAPS: [&Pass; 5] = [
     &sky_and_air_lights::PASS,
 ];
 
-/// Passes that run last: the irradiance at the points, from the maps, and the picture.
-pub static PICTURE: [&Pass; 2] = [&camera_irradiance::PASS, &shade::PASS];
+/// Passes that run last: the irradiance at the points, from the maps, and the picture; or the map of the water.
+pub static PICTURE: [&Pass; 3] = [&camera_irradiance::PASS, &shade::PASS, &water_map::PASS];

@@ -36,10 +36,13 @@ pub static POINT_IRRADIANCE: Slot =
         16 * points_of_a_band(facts)
     });
 
-/// Columns and rows of the output: the picture's pixels, or the texels of the requested map.
+/// Columns and rows of the output: the picture's pixels, or the texels of the requested map (of a receiver, or of the water).
 pub fn size(facts: &SceneFacts) -> Option<[u32; 2]> {
     if let Some(camera) = &facts.output.camera {
         return Some([camera.width, camera.height]);
+    }
+    if let Some(map) = &facts.output.water_map {
+        return Some([map.width, map.height]);
     }
     match facts.output.receiver? {
         crate::scene::Receiver::Floor(_) => {

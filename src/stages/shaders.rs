@@ -70,4 +70,5 @@ pub static SHARED: Embedded = embed_shaders![
     "stages/surface.wgsl",
     "stages/texel_points.wgsl",
     "stages/unfollowed.wgsl",
+    "stages/water_map.wgsl",
 ];

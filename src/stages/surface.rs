@@ -55,6 +55,9 @@ pub(super) fn cells(facts: &SceneFacts) -> f64 {
 
 /// The reason why passes that trace light run: a receiver under water needs light, and some light reaches it.
 pub fn wanted_for_light(facts: &SceneFacts) -> Result<String, String> {
+    if facts.output.is_water_map() {
+        return Err("the output is a map of the water, which needs no light".to_owned());
+    }
     if !facts.has_receiver() {
         return Err("nothing under water needs light".to_owned());
     }

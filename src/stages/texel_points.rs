@@ -33,6 +33,9 @@ pub static PASS: Pass = Pass {
     uniforms: &[("texel_points", TexelPoints::LAYOUT)],
     views: &[],
     wanted: |facts| match (&facts.output.camera, size(facts)) {
+        _ if facts.output.is_water_map() => {
+            Err("the output is a map of the water, not of a receiver".to_owned())
+        }
         (None, Some([width, height])) => Ok(format!("a map of {width} × {height} texels")),
         (None, None) => Err("the requested map has no texels".to_owned()),
         (Some(_), _) => Err("the output is a view: its points come from the pixels".to_owned()),

@@ -25,7 +25,9 @@ pub fn rung(given: &Quality, output: &Output, cells: u32) -> Quality {
         water_cells: cells,
         map_texels: (3 * cells / 2).clamp(128, 2048),
         level_map_texels: match output {
-            Output::View(_) => (cells.next_power_of_two() / 2).clamp(128, 1024),
+            Output::View(_) | Output::WaterMap(_) => {
+                (cells.next_power_of_two() / 2).clamp(128, 1024)
+            }
             Output::IrradianceMap(map) => match map.receiver {
                 Receiver::Floor(_) => (cells.next_power_of_two() / 2).clamp(SHADOW_TEXELS, 256),
                 Receiver::Object(_) => given.level_map_texels,

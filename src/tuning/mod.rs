@@ -12,9 +12,11 @@ pub mod choose;
 pub mod cost;
 pub mod ladder;
 
-use crate::scene::Quality;
+use crate::scene::Scene;
 
-/// Whether `quality` requests that dials are chosen.
-pub fn chooses_dials(quality: &Quality) -> bool {
-    quality.target_error.is_some() || quality.time_budget_ms.is_some()
+/// Whether `quality` requests that dials are chosen. No dial has an effect on a map of the water, so none is chosen for it.
+pub fn chooses_dials(scene: &Scene) -> bool {
+    let quality = &scene.quality;
+    let asks = quality.target_error.is_some() || quality.time_budget_ms.is_some();
+    asks && !scene.output.is_water_map()
 }

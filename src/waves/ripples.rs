@@ -1,4 +1,4 @@
-//! Ripples in basins, by their modes.
+//! Ripples in basins: by their modes, and the choice between them and the other solutions, `open_water` and `tank`.
 //!
 //! The modes between reflecting walls are cos(mπx/Lx) cos(nπz/Lz): those of a tile of twice the basin's sides on which the surface is
 //! even. A periodic basin is its own tile, and its modes have sines too. A drop's mound, folded at the walls or wrapped, has Gaussian
@@ -10,31 +10,56 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::footprint::Footprint;
 use super::grid::{Edges, Heights};
 use super::harmonics::{Line, Parts};
-use crate::physics::dispersion::angular_frequency_with_surface_tension;
+use super::{open_water, tank};
+use crate::kept::Kept;
+use crate::physics::dispersion::with_surface_tension;
+use crate::physics::oscillator::{Elapsed, Oscillator};
 use crate::physics::turns::sin_cos_turns;
-use crate::physics::{
-    constants::GRAVITY_M_PER_S2,
-    oscillator::{Elapsed, Oscillator},
-};
-use crate::scene::{RippleDispersion, RippleDrop, Ripples, Scene, Walls};
+use crate::scene::{RippleDrop, Ripples, Scene, Walls};
 
 /// Modes whose Gaussian is below e^−this, 10⁻²⁰, are 0.
-const SMALLEST_EXPONENT: f64 = 45.0;
+pub(super) const SMALLEST_EXPONENT: f64 = 45.0;
 
 /// Samples of the shortest mode.
-const SAMPLES_PER_WAVE: usize = 4;
-
-/// Fewest samples along a side.
-const FEWEST_SAMPLES: usize = 8;
+pub(super) const SAMPLES_PER_WAVE: usize = 4;
 
 /// A wave is noticed if its slope is this share of that of the steepest mode.
-const NOTICED_SLOPE: f64 = 1e-3;
+pub(super) const NOTICED_SLOPE: f64 = 1e-3;
 
-/// The basin at `scene.time_s` with its mirror images, with `refinement` times `ripples.samples` samples along the longer side. The modes are
-/// the same for every refinement.
-pub(super) fn heights(ripples: &Ripples, scene: &Scene, refinement: u32) -> Heights {
+/// The basin at `scene.time_s` with its mirror images or the water around it, with `refinement` times `ripples.samples` samples along the
+/// longer side. The waves are the same for every refinement; `footprint` is that of the obstacles on this grid.
+pub(super) fn heights(
+    ripples: &Ripples,
+    scene: &Scene,
+    refinement: u32,
+    footprint: Option<&Footprint>,
+    kept: &Kept,
+) -> Heights {
+    match (footprint, ripples.walls) {
+        (Some(footprint), _) => tank::heights(ripples, scene, refinement, footprint, kept),
+        (None, Walls::Absorbing) => open_water::heights(ripples, scene, refinement),
+        (None, Walls::Reflecting | Walls::Periodic) => modal_heights(ripples, scene, refinement),
+    }
+}
+
+/// What a basin is called in plans.
+pub(super) fn description(ripples: &Ripples) -> String {
+    let drops = match ripples.drops.len() {
+        0 => "without drops".to_owned(),
+        1 => "with 1 drop".to_owned(),
+        count => format!("with {count} drops"),
+    };
+    match ripples.obstacles.len() {
+        0 => format!("a basin {drops}"),
+        1 => format!("a basin {drops} and 1 obstacle"),
+        count => format!("a basin {drops} and {count} obstacles"),
+    }
+}
+
+fn modal_heights(ripples: &Ripples, scene: &Scene, refinement: u32) -> Heights {
     let sides = Side::both(ripples);
     let size = sides.each_ref().map(|side| side.tile_samples(refinement));
     let step_m = DVec2::from_array([0, 1].map(|i| sides[i].tile_m() / size[i] as f64));
@@ -47,7 +72,8 @@ pub(super) fn heights(ripples: &Ripples, scene: &Scene, refinement: u32) -> Heig
     } else {
         let lines: [Line; 2] =
             [0, 1].map(|i| Line::of(size[i], sides[i].first_sample(size[i]), sides[i].highest));
-        let frequency = angular_frequency(ripples, scene);
+        let dispersion = dispersion(ripples, scene);
+        let frequency = |k_per_m| dispersion(k_per_m).0;
         let columns: Vec<_> = (0..=sides[0].highest)
             .into_par_iter()
             .map(|m| {
@@ -66,17 +92,21 @@ pub(super) fn heights(ripples: &Ripples, scene: &Scene, refinement: u32) -> Heig
         corner_m,
         slope_lost: slope_lost(ripples),
         shortest_wave_m,
-        description: match ripples.drops.len() {
-            0 => "a basin without drops".to_owned(),
-            1 => "a basin with 1 drop".to_owned(),
-            count => format!("a basin with {count} drops"),
-        },
+        description: description(ripples),
     }
 }
 
 /// The share of the mean square slope that the grid does not carry, 0 … 1: that of the modes which are too short for it, of all drops at
 /// their moments; 0 if there is no slope. Waves of different drops are taken as independent.
 pub fn slope_lost(ripples: &Ripples) -> f64 {
+    match (ripples.obstacles.is_empty(), ripples.walls) {
+        (false, _) => tank::slope_lost(ripples),
+        (true, Walls::Absorbing) => open_water::slope_lost(ripples),
+        (true, Walls::Reflecting | Walls::Periodic) => modal_slope_lost(ripples),
+    }
+}
+
+fn modal_slope_lost(ripples: &Ripples) -> f64 {
     let sides = Side::both(ripples);
     let (mut carried, mut all) = (0.0, 0.0);
     for drop in &ripples.drops {
@@ -94,16 +124,21 @@ pub fn slope_lost(ripples: &Ripples) -> f64 {
     }
 }
 
-/// Angular frequency, rad/s, by wave number, rad/m. With a floor at depth 0 it is 0: the mounds stand still.
-fn angular_frequency(ripples: &Ripples, scene: &Scene) -> impl Fn(f64) -> f64 + Sync {
+/// Angular frequency, rad/s, and group speed, m/s, by wave number, rad/m. With a floor at depth 0 both are 0: the mounds stand still.
+pub(super) fn dispersion(ripples: &Ripples, scene: &Scene) -> impl Fn(f64) -> (f64, f64) + Sync {
     let depth_m = scene.floor.as_ref().map(|floor| floor.depth_m);
-    let shallow_m_per_s = match ripples.dispersion {
-        RippleDispersion::Shallow => depth_m.map(|depth_m| (GRAVITY_M_PER_S2 * depth_m).sqrt()),
-        RippleDispersion::FiniteDepth => None,
-    };
+    let shallow_m_per_s = ripples.shallow_m_per_s(depth_m);
     move |k_per_m| match shallow_m_per_s {
-        Some(speed_m_per_s) => k_per_m * speed_m_per_s,
-        None => angular_frequency_with_surface_tension(k_per_m, depth_m.unwrap_or(f64::INFINITY)),
+        Some(speed_m_per_s) => (k_per_m * speed_m_per_s, speed_m_per_s),
+        None => with_surface_tension(k_per_m, depth_m.unwrap_or(f64::INFINITY)),
+    }
+}
+
+/// Basins along one side of the tile after which the surface repeats.
+fn mirrored(walls: Walls) -> usize {
+    match walls {
+        Walls::Reflecting => 2,
+        Walls::Periodic | Walls::Absorbing => 1,
     }
 }
 
@@ -127,19 +162,10 @@ struct Squares {
 impl Side {
     /// Along x and z.
     fn both(ripples: &Ripples) -> [Self; 2] {
-        let lengths_m = [0, 1].map(|i| ripples.max_m[i] - ripples.min_m[i]);
-        let longest_m = lengths_m[0].max(lengths_m[1]);
+        let (lengths_m, samples) = (ripples.sides_m(), ripples.side_samples());
         [0, 1].map(|i| {
-            let samples = if lengths_m[i] == longest_m {
-                ripples.samples as usize
-            } else {
-                let pairs = 0.5 * f64::from(ripples.samples) * lengths_m[i] / longest_m;
-                (2 * pairs.round() as usize).max(FEWEST_SAMPLES)
-            };
-            let mirrored = match ripples.walls {
-                Walls::Reflecting => 2,
-                Walls::Periodic => 1,
-            };
+            let samples = samples[i];
+            let mirrored = mirrored(ripples.walls);
             Self {
                 min_m: ripples.min_m[i],
                 length_m: lengths_m[i],
@@ -152,26 +178,19 @@ impl Side {
 
     /// Length after which the surface repeats, m.
     fn tile_m(&self) -> f64 {
-        match self.walls {
-            Walls::Reflecting => 2.0 * self.length_m,
-            Walls::Periodic => self.length_m,
-        }
+        mirrored(self.walls) as f64 * self.length_m
     }
 
     /// Samples of the tile.
     fn tile_samples(&self, refinement: u32) -> usize {
-        let mirrored = match self.walls {
-            Walls::Reflecting => 2,
-            Walls::Periodic => 1,
-        };
-        mirrored * self.samples * refinement as usize
+        mirrored(self.walls) * self.samples * refinement as usize
     }
 
     /// Place of the first of `count` samples, as a share of the tile. Between walls samples stand half a step from them.
     fn first_sample(&self, count: usize) -> f64 {
         match self.walls {
             Walls::Reflecting => 0.5 / count as f64,
-            Walls::Periodic => 0.0,
+            Walls::Periodic | Walls::Absorbing => 0.0,
         }
     }
 
@@ -188,7 +207,7 @@ impl Side {
         let (sin, cos) = sin_cos_turns(mode as f64 * ((position_m - self.min_m) / self.tile_m()));
         match self.walls {
             Walls::Reflecting => [amplitude * cos, 0.0],
-            Walls::Periodic => [amplitude * cos, amplitude * sin],
+            Walls::Periodic | Walls::Absorbing => [amplitude * cos, amplitude * sin],
         }
     }
 

@@ -9,6 +9,7 @@ use caustica::cli::{CliError, files};
 use caustica::config::Limits;
 use caustica::scene::{ImageFormat, Issue};
 
+use super::field_support::npy;
 use super::folder::{Folder, TRIANGLE, scene_text};
 
 fn scene_args(path: &Path, overrides: &[(&str, &str)]) -> SceneArgs {
@@ -46,6 +47,56 @@ fn a_scene_file_is_read_with_its_meshes() {
     let moved = folder.write("moved.json", &scene_text("elsewhere.obj"));
     let changed = load(&scene_args(&moved, &[]), None, &limits).unwrap();
     assert_ne!(changed.resolved.hash(), loaded.resolved.hash());
+}
+
+/// A scene whose water is given by these files.
+fn field_scene(folder: &Folder, frames: &[&str]) -> std::path::PathBuf {
+    let scene = serde_json::json!({
+        "water": { "waves": [{ "kind": "height_field", "frames": frames, "sample_m": 0.1, "frames_per_s": 10 }] },
+        "floor": { "depth_m": 1, "size_m": [2, 2] },
+        "output": { "kind": "irradiance_map" }
+    });
+    folder.write("s/scene.json", &scene.to_string())
+}
+
+#[test]
+fn a_scene_file_is_read_with_its_height_fields() {
+    let folder = Folder::new();
+    let scene = field_scene(&folder, &["a.npy", "../b.npy", "a.npy"]);
+    let numbers: Vec<f64> = (0..64).map(|i| 1e-3 * f64::from(i)).collect();
+    let (a, b) = (npy(&[8, 8], &numbers), npy(&[8, 8], &[0.5; 64]));
+    fs::write(scene.with_file_name("a.npy"), &a).unwrap();
+    fs::write(scene.parent().unwrap().with_file_name("b.npy"), &b).unwrap();
+    let limits = Limits::default();
+    let loaded = load(&scene_args(&scene, &[]), None, &limits).unwrap();
+    let caustica::scene::Wave::HeightField(field) = &loaded.resolved.scene.water.waves[0] else {
+        panic!("no height field")
+    };
+    let ids = [&a, &b, &a].map(|bytes| format!("blake3:{}", blake3::hash(bytes).to_hex()));
+    assert_eq!(field.frames, ids);
+    assert_eq!(loaded.resolved.fields[&0].count(), 3);
+}
+
+#[test]
+fn files_of_height_fields_that_cannot_be_read_are_errors_at_their_place() {
+    let folder = Folder::new();
+    let scene = field_scene(&folder, &["none.npy", "", "folder", "text.npy", "none.npy"]);
+    fs::create_dir(scene.with_file_name("folder")).unwrap();
+    fs::write(scene.with_file_name("text.npy"), "1 2 3").unwrap();
+    let found = issues(load(&scene_args(&scene, &[]), None, &Limits::default()).unwrap_err());
+    for (frame, words) in [
+        (0, "`none.npy` cannot be used"),
+        (1, "empty"),
+        (2, "directory"),
+        (3, "neither NPY"),
+        (4, "`none.npy`"),
+    ] {
+        let pointer = format!("/water/waves/0/frames/{frame}");
+        let is_there = found.iter().any(|issue| {
+            issue.pointer == pointer && issue.detail.contains(words) && !issue.accepted.is_empty()
+        });
+        assert!(is_there, "{frame}: {found:?}");
+    }
 }
 
 /// The reflectance of the mesh of a scene in a folder, and the notes.

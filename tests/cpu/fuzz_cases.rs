@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use caustica::lab::hard_cases;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::fuzz_checks;
 
@@ -30,6 +30,38 @@ fn scenes_that_fuzzing_has_found_are_read_or_refused() {
 #[test]
 fn meshes_that_fuzzing_has_found_are_read_or_refused() {
     assert!(replay("obj", fuzz_checks::obj::check) > 0);
+}
+
+#[test]
+fn fields_are_read_or_refused() {
+    assert!(replay("../../tests/fixtures/fields", fuzz_checks::field::check) > 0);
+}
+
+#[test]
+fn height_fields_of_any_file_are_planned_or_refused() {
+    let field = |more: Value| {
+        let mut field = json!({ "kind": "height_field", "frames": ["blake3:00"], "sample_m": 0.1, "range_m": [-0.01, 0.01], "frames_per_s": 2 });
+        for (name, value) in more.as_object().unwrap() {
+            field[name] = value.clone();
+        }
+        let scene = json!({
+            "water": { "waves": [field] },
+            "floor": { "depth_m": 1, "size_m": [2, 2] },
+            "lights": [{ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [1, 1, 1] }],
+            "output": { "kind": "irradiance_map" },
+            "time_s": 0.3
+        });
+        scene.to_string()
+    };
+    for more in [
+        json!({}),
+        json!({ "edges": "periodic", "rows_along": "z", "first_row": "max" }),
+        json!({ "frames": ["blake3:00", "blake3:01"], "after": "loop", "rim_m": 0.2, "rest_m": 0 }),
+        json!({ "holds": "slopes" }),
+        json!({ "frames": [] }),
+    ] {
+        fuzz_checks::scene::check(field(more).as_bytes());
+    }
 }
 
 #[test]

@@ -19,11 +19,15 @@ mod cli_program;
 mod cli_scene_file;
 mod cli_streams;
 mod experiment;
+mod field_files;
+#[path = "../support/field_files.rs"]
+mod field_support;
 mod folder;
 mod fuzz_cases;
 #[path = "../../fuzz/checks/mod.rs"]
 mod fuzz_checks;
 mod grid_bounds;
+mod height_fields;
 mod image_exr;
 mod image_metadata;
 mod image_png;
@@ -40,6 +44,8 @@ mod mesh_store;
 mod methods;
 mod metrics;
 mod mutants;
+mod obstacles;
+mod open_water;
 mod output_files;
 mod physics;
 mod plans;
@@ -69,6 +75,7 @@ mod scene_validate;
 mod scene_warnings;
 mod scene_waves;
 mod sea;
+mod sea_statistics;
 mod shader_constants;
 #[path = "../../examples/mutants/shader_plants.rs"]
 mod shader_plants;
@@ -84,4 +91,5 @@ mod truth_disk;
 #[path = "../support/truths.rs"]
 mod truths;
 mod tuning;
+mod water_map;
 mod waves;

@@ -163,8 +163,8 @@ fn a_full_scene_needs_every_pass() {
         ("water", steep),
     ]);
     let all: Vec<&str> = default_passes().iter().map(|pass| pass.name).collect();
-    // Points are what the pixels see, and the method does not compute their irradiance itself.
-    let others = ["texel_points", "sky_and_air_lights"];
+    // Points are what the pixels see, the method does not compute their irradiance itself, and the picture is the only output.
+    let others = ["texel_points", "sky_and_air_lights", "water_map"];
     let needed: Vec<&str> = all
         .into_iter()
         .filter(|name| !others.contains(name))

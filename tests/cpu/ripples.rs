@@ -57,7 +57,7 @@ fn sides_m(ripples: &Ripples) -> [f64; 2] {
 fn places(ripples: &Ripples, axis: usize, count: usize) -> Vec<f64> {
     let half = match ripples.walls {
         Walls::Reflecting => 0.5,
-        Walls::Periodic => 0.0,
+        Walls::Periodic | Walls::Absorbing => 0.0,
     };
     let step_m = sides_m(ripples)[axis] / count as f64;
     (0..count)
@@ -184,7 +184,7 @@ fn a_drop_is_a_gaussian_folded_at_walls_or_wrapped() {
             let mirrored = 2.0 * ripples.min_m[axis] - position_m[axis];
             let images: &[f64] = match walls {
                 Walls::Reflecting => &[position_m[axis], mirrored],
-                Walls::Periodic => &[position_m[axis]],
+                Walls::Periodic | Walls::Absorbing => &[position_m[axis]],
             };
             let repeat_m = images.len() as f64 * sides[axis];
             let gaussian = |middle_m: f64| (-0.5 * ((at_m - middle_m) / radius_m).powi(2)).exp();

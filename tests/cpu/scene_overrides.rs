@@ -25,10 +25,12 @@ fn every_serialised_field_of_quality_and_output_is_there_once() {
     } });
     let wishes =
         json!({ "quality": { "method": "any", "target_error": 0.1, "time_budget_ms": 10 } });
-    let view = Scene::from_value(wishes).unwrap();
-    let map = Scene::from_value(map).unwrap();
+    let water = json!({ "output": {
+        "kind": "water_map", "min_m": [0, 0], "max_m": [1, 1], "width": 1, "height": 1, "embed_scene": false
+    } });
     let mut pointers = Vec::new();
-    for scene in [view, map] {
+    for scene in [wishes, map, water] {
+        let scene = Scene::from_value(scene).unwrap();
         let value = serde_json::to_value(&scene).unwrap();
         for section in ["quality", "output"] {
             for name in value[section].as_object().unwrap().keys() {
@@ -62,7 +64,16 @@ fn fields_carry_their_documentation() {
     assert_eq!(layers[0].flag, "quality-layers");
     assert_eq!(layers[1].flag, "layers");
     assert!(layers[1].words.contains(&"depth".to_owned()));
-    assert_eq!(field("kind").words, ["view", "irradiance_map"]);
+    assert_eq!(field("kind").words, ["view", "irradiance_map", "water_map"]);
+    let width = field("width").help;
+    assert!(width.starts_with("View: Picture width"), "{width}");
+    assert!(
+        width.contains("Irradiance map: Texels along x") && width.contains("Water map: Texels"),
+        "{width}"
+    );
+    assert_eq!(width.matches("View:").count(), 1, "{width}");
+    let scene = field("embed_scene").help;
+    assert!(!scene.contains("map:"), "the same for all kinds: {scene}");
     let lists: Vec<String> = fields()
         .into_iter()
         .filter(|f| f.is_list)
@@ -131,6 +142,30 @@ fn the_kind_is_put_in_first() {
         Scene::from_value(out).unwrap().output,
         Output::IrradianceMap(_)
     ));
+}
+
+#[test]
+fn another_kind_of_output_drops_what_it_does_not_have() {
+    let view = json!({ "output": {
+        "kind": "view", "width": 7, "exposure_ev": 1.0, "layers": ["radiance"], "embed_scene": false, "typo": 1
+    } });
+    let to = |kind: &str| overridden(view.clone(), &[("/output/kind", kind)])["output"].clone();
+    assert_eq!(
+        to("water_map"),
+        json!({ "kind": "water_map", "width": 7, "embed_scene": false })
+    );
+    assert_eq!(
+        to("irradiance_map"),
+        json!({ "kind": "irradiance_map", "width": 7, "exposure_ev": 1.0, "embed_scene": false })
+    );
+    // The same kind keeps what is wrong in it, and so does one that there is not: reading the scene says what it is.
+    assert_eq!(to("view"), view["output"]);
+    assert_eq!(to("video")["typo"], 1);
+    let given = overridden(
+        view,
+        &[("/output/kind", "water_map"), ("/output/exposure_ev", "2")],
+    );
+    assert_eq!(given["output"]["exposure_ev"], 2);
 }
 
 #[test]

@@ -130,7 +130,7 @@ const SHAPES: &[Refusal] = &[
         r#"{"output": {}}"#,
         "/output/kind",
         "missing field `kind`",
-        "`view` or `irradiance_map`",
+        "`view`, `irradiance_map` or `water_map`",
     ),
     (
         r#"{"output": {"kind": "View"}}"#,

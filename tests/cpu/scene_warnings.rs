@@ -327,3 +327,21 @@ fn seas_without_waves_and_smoothed_waves_are_told() {
         "{found:?}"
     );
 }
+
+#[test]
+fn obstacles_that_reflect_nothing_are_told() {
+    const POST: &str =
+        "v 0 -1 0\nv .2 -1 0\nv 0 -1 .2\nv .1 1 .1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n";
+    let told = |y_m: f64| -> Vec<Option<String>> {
+        let mut scene = scene(&[sun(60.0)], &json!({}));
+        scene["water"]["waves"] = json!([{ "kind": "ripples", "min_m": [-1, -1], "max_m": [1, 1], "samples": 64, "dispersion": "shallow",
+            "obstacles": [0], "drops": [{ "position_m": [0.5, 0.5], "radius_m": 0.1, "height_m": 0.01 }] }]);
+        let found = warnings_of(scene, &[(POST, json!({ "translation_m": [0, y_m, 0] }))]);
+        let found = found
+            .into_iter()
+            .filter(|warning| warning.code == "obstacle_outside_basin");
+        found.map(|warning| warning.pointer).collect()
+    };
+    assert_eq!(told(0.0), []);
+    assert_eq!(told(-1.5), [Some("/water/waves/0/obstacles/0".to_owned())]);
+}

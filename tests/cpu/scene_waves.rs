@@ -153,3 +153,72 @@ fn grids_are_bounded_together() {
     let issue = only(&scene, "/water/waves");
     assert_eq!(issue.kind, IssueKind::LimitExceeded);
 }
+
+#[test]
+fn obstacles_name_objects_in_shallow_water() {
+    let with_obstacles = |obstacles: Value| {
+        let mut scene = scene(ripples());
+        scene["water"]["waves"][0]["obstacles"] = obstacles;
+        scene
+    };
+    let good = with_obstacles(json!([0]));
+    assert_eq!(findings(&good), []);
+    assert_eq!(findings(&with_obstacles(json!([]))), []);
+    let pointer = "/water/waves/0/obstacles/1";
+    let issue = only(&with_obstacles(json!([0, 1])), pointer);
+    assert!(issue.detail.contains("there is no object 1") && issue.accepted == "0");
+    let issue = only(&with_obstacles(json!([0, 0])), pointer);
+    assert!(issue.detail.contains("twice"), "{issue}");
+    let mut bare = good.clone();
+    bare["objects"] = json!([]);
+    let issue = only(&bare, "/water/waves/0/obstacles/0");
+    assert!(issue.accepted.contains("has no objects"), "{issue}");
+    let pointer = "/water/waves/0/dispersion";
+    let issue = only(&with(good.clone(), pointer, json!("finite_depth")), pointer);
+    assert!(issue.accepted.contains("`shallow`"), "{issue}");
+    let mut bottomless = good.clone();
+    bottomless.as_object_mut().unwrap().remove("floor");
+    let found = findings(&bottomless);
+    let issue = found
+        .iter()
+        .find(|issue| issue.pointer == "/water/waves/0/obstacles")
+        .unwrap();
+    assert!(issue.accepted.contains("floor"), "{issue}");
+    for wrong in [json!([-1]), json!(["post"]), json!(true), json!([0.5])] {
+        let text = with_obstacles(wrong).to_string();
+        assert!(
+            refusal(&text)
+                .pointer
+                .starts_with("/water/waves/0/obstacles")
+        );
+    }
+}
+
+/// Steps × samples are bounded: 64 samples of 43 × 64 in 2 m of water take some 200 steps a second.
+#[test]
+fn times_that_need_too_many_steps_are_refused() {
+    let mut scene = scene(ripples());
+    scene["water"]["waves"][0]["obstacles"] = json!([0]);
+    for time_s in [-1e12, 0.0, 1e3] {
+        assert_eq!(findings(&with(scene.clone(), "/time_s", json!(time_s))), []);
+    }
+    let issue = only(&with(scene.clone(), "/time_s", json!(1e9)), "/time_s");
+    assert_eq!(issue.kind, IssueKind::LimitExceeded);
+    assert!(issue.accepted.contains("8e9 samples × steps"), "{issue}");
+    // The time that is named is accepted, and twice as much is not.
+    let most_s: f64 = issue
+        .accepted
+        .split("a time of at most ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next())
+        .and_then(|number| number.parse().ok())
+        .unwrap();
+    assert_eq!(findings(&with(scene.clone(), "/time_s", json!(most_s))), []);
+    only(
+        &with(scene.clone(), "/time_s", json!(2.0 * most_s)),
+        "/time_s",
+    );
+    // Without obstacles any time does.
+    scene["water"]["waves"][0]["obstacles"] = json!([]);
+    assert_eq!(findings(&with(scene, "/time_s", json!(1e12))), []);
+}

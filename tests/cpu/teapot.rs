@@ -190,7 +190,13 @@ fn the_teapot_blocks_what_falls_on_it() {
 
 #[test]
 fn normals_agree_with_the_winding() {
-    for name in ["teapot.obj", "torus_knot.obj", "box.obj", "floor_tiles.obj"] {
+    for name in [
+        "teapot.obj",
+        "torus_knot.obj",
+        "box.obj",
+        "post.obj",
+        "floor_tiles.obj",
+    ] {
         let mut sharp = 0;
         let mesh = load(name, None);
         for triangle in &mesh.triangles {
@@ -217,6 +223,12 @@ fn the_solids_are_closed_and_face_outward() {
     assert!(unit_box.warnings.is_empty(), "{:?}", unit_box.warnings);
     assert_eq!(parts(&unit_box).len(), 1);
     assert!((volume(&parts(&unit_box)[0].0) - 1.0).abs() < 1e-6);
+
+    let post = parts(&load("post.obj", None));
+    assert_eq!((post.len(), post[0].0.len(), post[0].1), (1, 188, 0));
+    // A prism over a 48-gon of radius ½ m.
+    let area = 6.0 * (std::f64::consts::TAU / 48.0).sin();
+    assert!((volume(&post[0].0) / area - 1.0).abs() < 1e-5);
 
     let knot = load("torus_knot.obj", None);
     assert!(knot.warnings.is_empty(), "{:?}", knot.warnings);

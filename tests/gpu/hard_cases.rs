@@ -108,6 +108,19 @@ cases! {
         a_line_focus_on_the_floor,
         a_point_focus_on_the_floor,
     }
+    sea {
+        a_sea_without_wind,
+        a_sea_at_30_metres_per_second,
+        waves_of_four_samples,
+        waves_of_one_sample,
+        a_loop_of_one_frame,
+        a_sea_after_a_billion_seconds,
+        a_tile_of_a_centimetre,
+        a_tile_of_10_kilometres,
+        a_drop_on_a_wall,
+        drops_before_at_and_after_the_moment,
+        a_basin_after_a_billion_seconds,
+    }
     place {
         moved_by_100_km,
         lifted_by_100_km,

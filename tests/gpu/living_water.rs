@@ -125,3 +125,45 @@ fn the_same_water_gives_the_same_bytes() {
     assert_ne!(at(&looped, 0.75), at(&looped, 1.0));
     assert_ne!(at(&other, 0.75), at(&looped, 0.75));
 }
+
+/// The map a tile further holds the same bits, and within one map the light of a tile lies next to its copy: across the border between
+/// them neighbours differ no more than elsewhere.
+#[test]
+fn a_tile_of_a_sea_lies_next_to_its_copy() {
+    let waves = json!([{
+        "kind": "spectrum", "model": "jonswap", "wind_speed_m_s": 3, "fetch_m": 2000, "tile_m": 2, "samples": 64, "seed": 5,
+        "min_wavelength_m": 0.25
+    }]);
+    let over = |min_m: [f64; 2], max_m: [f64; 2], texels: [u32; 2]| {
+        let mut scene = pool(&waves, 256);
+        scene["floor"]["size_m"] = json!([100, 100]);
+        for (field, value) in [("min_m", json!(min_m)), ("max_m", json!(max_m))] {
+            scene["output"][field] = value;
+        }
+        scene["output"]["width"] = json!(texels[0]);
+        scene["output"]["height"] = json!(texels[1]);
+        Map::of(scene)
+    };
+    let here = over([-1.0, -1.0], [1.0, 1.0], [64, 64]);
+    let there = over([5.0, -3.0], [7.0, -1.0], [64, 64]);
+    assert_eq!(here.frame.layers, there.frame.layers);
+
+    // Two tiles side by side: columns 0 … 63 and 64 … 127.
+    let both = over([-2.0, -1.0], [2.0, 1.0], [128, 64]);
+    let red = |column: usize, row: usize| both.values()[3 * (128 * row + column)];
+    let (mut apart, mut all) = (0.0, 0.0);
+    let mut steps = [0.0; 128];
+    for row in 0..64 {
+        for column in 0..64 {
+            apart += (red(column, row) - red(column + 64, row)).abs();
+            all += red(column, row);
+        }
+        for (column, step) in steps.iter_mut().enumerate().skip(1) {
+            *step += (red(column, row) - red(column - 1, row)).abs();
+        }
+    }
+    // Their water cells lie differently over the two tiles.
+    assert!(apart / all < 0.02, "{}", apart / all);
+    let largest = steps.iter().copied().fold(0.0, f64::max);
+    assert!(steps[64] < largest, "a seam: {} of {largest}", steps[64]);
+}

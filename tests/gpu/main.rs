@@ -17,6 +17,9 @@ mod determinism;
 mod energy;
 mod estimate;
 mod experiment;
+#[allow(dead_code, reason = "the tests of files use what is not used here")]
+#[path = "../support/field_files.rs"]
+mod field_support;
 mod flat;
 #[allow(
     dead_code,
@@ -28,6 +31,7 @@ mod footprint;
 mod formulas;
 mod hard_cases;
 mod harness;
+mod height_fields;
 mod instances;
 #[path = "../support/instances.rs"]
 mod instances_scene;
@@ -57,4 +61,5 @@ mod tiles;
 #[path = "../support/truths.rs"]
 mod truths;
 mod view;
+mod water_maps;
 mod wide_sums;

@@ -2,6 +2,7 @@
 //!
 //! | module | question |
 //! |---|---|
+//! | `assets` | are files of numbers stored, listed, found, used and forgotten? |
 //! | `connections` | real sockets: silence, half headers, eviction, clients that do not read |
 //! | `contract` | do `openapi.yaml`, routes, schemas and examples agree? |
 //! | `cors` | what pages of other origins may do |
@@ -23,11 +24,15 @@
     reason = "in a test a panic is the report of a failure"
 )]
 
+mod assets;
 mod connections;
 mod contract;
 mod cors;
 mod encodings;
 mod errors;
+#[allow(dead_code, reason = "the tests of files use what is not used here")]
+#[path = "../support/field_files.rs"]
+mod field_support;
 mod log;
 mod meshes;
 mod overload;

@@ -3,6 +3,7 @@
 use axum::http::Request;
 use base64::Engine as _;
 use caustica::gpu::GpuError;
+use caustica::http::ProblemKind;
 use caustica::http::routes::render::RenderAnswer;
 use caustica::image::{decode_exr, decode_png};
 use caustica::render::RenderError;
@@ -42,6 +43,31 @@ async fn a_map_becomes_an_exr() {
     assert_eq!(reply.header("content-type"), "image/x-exr");
     let map = decode_exr(&reply.body).unwrap();
     assert_eq!((map.width, map.height), (16, 4));
+}
+
+#[tokio::test]
+async fn a_map_of_the_water_becomes_an_exr_or_a_normal_map() {
+    let service = Service::start().await;
+    let mut scene = json!({
+        "output": { "kind": "water_map", "min_m": [-1, 2], "max_m": [1, 3], "width": 16, "height": 4 }
+    });
+    let reply = service.post_json("/v1/render", &scene).await;
+    assert_eq!(reply.status, 200, "{}", reply.text());
+    assert_eq!(reply.header("content-type"), "image/x-exr");
+    let map = decode_exr(&reply.body).unwrap();
+    assert_eq!((map.width, map.height), (16, 4));
+    assert!(map.channels.contains_key("slope.x"));
+    scene["output"]["format"] = json!("png");
+    let reply = service.post_json("/v1/render", &scene).await;
+    assert_eq!(reply.header("content-type"), "image/png");
+    assert_eq!(decode_png(&reply.body).unwrap().bits, 16);
+    // Without light there is nothing that a study could compare.
+    let reply = service
+        .post_json("/v1/accuracy", json!({ "scene": scene }))
+        .await;
+    let problem = reply.problem(ProblemKind::InvalidScene);
+    assert_eq!(problem.errors[0].pointer, "/scene/output/kind");
+    assert_eq!(problem.errors[0].accepted, "`view` or `irradiance_map`");
 }
 
 #[tokio::test]

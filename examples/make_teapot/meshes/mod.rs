@@ -9,6 +9,7 @@ pub(crate) fn all() -> Vec<(&'static str, String)> {
     vec![
         ("box.obj", solids::unit_box()),
         ("floor_tiles.obj", solids::floor_tiles()),
+        ("post.obj", solids::post()),
         ("teapot.mtl", teapot::mtl()),
         ("teapot.obj", teapot::obj()),
         ("torus_knot.obj", solids::torus_knot()),

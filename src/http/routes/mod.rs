@@ -1,6 +1,7 @@
 //! The routes, one resource per file.
 
 pub mod accuracy;
+pub mod assets;
 pub mod docs;
 pub mod health;
 pub mod info;

@@ -92,7 +92,7 @@ pub async fn render(
     let encoding = resolved.scene.output.encoding();
     let representation = choose(&headers, encoding.format)?;
     let scene_hash = resolved.hash();
-    let are_chosen = chooses_dials(&resolved.scene.quality);
+    let are_chosen = chooses_dials(&resolved.scene);
     let tag_on = |adapter: &AdapterStats, status: &GpuStatus| {
         let basis = are_chosen.then_some(status.dial_basis.as_str());
         entity_tag(&scene_hash, adapter, basis)

@@ -15,6 +15,8 @@ pub enum Family {
     Light,
     /// Flat, tiny and steep waves, depths, indices, times, absorption.
     Water,
+    /// Seas, basins and given heights at the ends of their ranges.
+    Sea,
     /// The same scene in another place, smaller and larger.
     Place,
     /// Broken, thin, tiny, huge and awkwardly placed meshes.
@@ -29,9 +31,10 @@ pub enum Family {
 
 impl Family {
     /// All families, in the order of the suite.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Light,
         Self::Water,
+        Self::Sea,
         Self::Place,
         Self::Mesh,
         Self::Fold,
@@ -44,6 +47,7 @@ impl Family {
         match self {
             Self::Light => "light",
             Self::Water => "water",
+            Self::Sea => "sea",
             Self::Place => "place",
             Self::Mesh => "mesh",
             Self::Fold => "fold",

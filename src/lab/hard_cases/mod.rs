@@ -8,7 +8,7 @@
 //! - `bench`: rendering with the checks for all cases;
 //! - `truths`: what pictures are compared with;
 //! - `page`: the results as a page;
-//! - the families: `light` (and `lamp`), `water`, `place`, `mesh`, `fold`, `camera`, `machine` (with
+//! - the families: `light` (and `lamp`), `water`, `sea`, `place`, `mesh`, `fold`, `camera`, `machine` (with
 //!   `sabotage`: how to break a device).
 
 mod bench;
@@ -23,6 +23,7 @@ mod obj;
 pub mod page;
 mod place;
 mod sabotage;
+mod sea;
 mod truths;
 mod unfollowed;
 mod water;
@@ -38,6 +39,7 @@ pub fn all() -> impl Iterator<Item = &'static Case> {
         light::CASES,
         lamp::CASES,
         water::CASES,
+        sea::CASES,
         place::CASES,
         mesh::CASES,
         fold::CASES,

@@ -205,13 +205,20 @@ pub fn run_study<E: std::error::Error>(
 /// Checks that [`run_study`] makes before it renders, for callers that have to compute a truth first.
 ///
 /// # Errors
-/// [`StudyError::Scene`] where a dial's value is not accepted, [`StudyError::TooMany`], [`StudyError::NothingLeft`] where no method can do
+/// [`StudyError::Scene`] where a dial's value is not accepted or the output has no light, [`StudyError::TooMany`], [`StudyError::NothingLeft`] where no method can do
 /// its setting.
 pub fn check<E: std::error::Error>(
     resolved: &ResolvedScene,
     settings: &SweepSettings,
     limits: &Limits,
 ) -> Result<(), StudyError<E>> {
+    if resolved.scene.output.is_water_map() {
+        return Err(StudyError::Scene(SceneError::from(Issue::invalid(
+            "/output/kind",
+            "a study compares light, and a map of the water has none",
+            "`view` or `irradiance_map`",
+        ))));
+    }
     let plan = settings_of(settings);
     let scenes = scenes_of(&plan, resolved, limits)?;
     let all = plan.iter().flat_map(|(_, settings)| settings);

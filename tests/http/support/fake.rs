@@ -295,6 +295,12 @@ fn draw(resolved: &ResolvedScene) -> Frame {
             map.width.unwrap_or(8),
             map.height.unwrap_or(8),
         ),
+        Output::WaterMap(map) => (
+            LayerName::Water,
+            3,
+            map.width.unwrap_or(8),
+            map.height.unwrap_or(8),
+        ),
     };
     let values = width as usize * height as usize * channels;
     let data = (0..values).map(|i| i as f32 / values as f32).collect();
@@ -314,6 +320,7 @@ fn draw(resolved: &ResolvedScene) -> Frame {
         kind: match resolved.scene.output {
             Output::View(_) => FrameKind::View,
             Output::IrradianceMap(_) => FrameKind::IrradianceMap,
+            Output::WaterMap(_) => FrameKind::WaterMap,
         },
         width,
         height,
