@@ -9,12 +9,12 @@ use rayon::prelude::*;
 const DIRECTIONS: usize = 32;
 
 /// Values that are treated together, so that the compiler uses vector instructions.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// Rows of cells that a task treats.
 const ROWS: usize = 16;
 
-type Lanes = [f64; LANES];
+pub(super) type Lanes = [f64; LANES];
 
 /// Bounds of a spline and its derivatives, true at every point.
 #[derive(Debug, PartialEq)]
@@ -115,7 +115,7 @@ fn direction(i: usize) -> DVec2 {
 }
 
 /// A row that repeats, with more of it at its end, so that whole blocks of lanes and their neighbours are there.
-fn padded(row: &[f64]) -> Vec<f64> {
+pub(super) fn padded(row: &[f64]) -> Vec<f64> {
     let length = row.len().next_multiple_of(LANES) + LANES;
     row.iter().copied().cycle().take(length).collect()
 }
@@ -125,7 +125,7 @@ fn larger(value: f64, most: f64) -> f64 {
     if value > most { value } else { most }
 }
 
-fn raise(most: &mut Lanes, value: impl Fn(usize) -> f64) {
+pub(super) fn raise(most: &mut Lanes, value: impl Fn(usize) -> f64) {
     for lane in 0..LANES {
         most[lane] = larger(value(lane), most[lane]);
     }
@@ -274,7 +274,7 @@ impl Sweep {
 }
 
 /// A block of lanes and their neighbours.
-fn block(row: &[f64], first: usize) -> &[f64; LANES + 3] {
+pub(super) fn block(row: &[f64], first: usize) -> &[f64; LANES + 3] {
     row[first..first + LANES + 3]
         .try_into()
         .expect("rows are padded")

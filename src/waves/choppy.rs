@@ -8,14 +8,16 @@
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
-use super::bounds::{at_sample, between, slope_between, third_differences};
+use super::bounds::{
+    LANES, Lanes, at_sample, between, block, padded, raise, slope_between, third_differences,
+};
 use super::spline::{dot, four_from, slopes, weights};
 
 /// Largest magnitude of the strain's eigenvalues where it compresses: as the steepness of a Gerstner wave, 1 is a cusp.
 const MOST_STRAIN: f64 = 0.95;
 
-/// Offset, in samples, at which the inverse counts as found.
-const FOUND: f64 = 1e-12;
+/// Offset, in samples, from which one more step of Newton's method leaves less than 10⁻¹⁰.
+const NEAR: f64 = 1e-7;
 
 /// Most steps of Newton's method, and halvings of one.
 const MOST_STEPS: usize = 60;
@@ -48,12 +50,19 @@ impl Choppy {
         if !(strain <= MOST_STRAIN) {
             return Err(MOST_STRAIN / compression);
         }
+        let pairs = self.displacement[0].iter().zip(&self.displacement[1]);
+        let map = Map {
+            size: self.size,
+            displacement: pairs
+                .map(|(x, z)| choppiness * DVec2::new(*x, *z))
+                .collect(),
+        };
         let mut heights_m = vec![0.0; self.size * self.size];
         let rows = heights_m.par_chunks_exact_mut(self.size).enumerate();
         rows.try_for_each(|(z, row)| {
             for (x, height_m) in row.iter_mut().enumerate() {
                 let place = [x as i64, z as i64];
-                let from = self.origin_of(place, choppiness)?;
+                let from = map.origin_of(place)?;
                 *height_m = self.height_at(place, from);
             }
             Some(())
@@ -74,13 +83,8 @@ impl Choppy {
         let seen = (0..size)
             .into_par_iter()
             .map(|z| {
-                let rows = |of: &[f64]| -> [Vec<f64>; 4] {
-                    // Three more, so that every sample has its neighbours.
-                    [0, 1, 2, 3].map(|i| {
-                        let row = &of[(z + i) % size * size..][..size];
-                        [row, &row[..3]].concat()
-                    })
-                };
+                let rows =
+                    |of: &[f64]| [0, 1, 2, 3].map(|i| padded(&of[(z + i) % size * size..][..size]));
                 compression_of_row(&rows(along_x), &rows(along_z))
             })
             .reduce(|| 0.0, f64::max);
@@ -96,19 +100,36 @@ impl Choppy {
         if seen > 0.0 { seen + error } else { 0.0 }
     }
 
+    fn height_at(&self, place: [i64; 2], from: DVec2) -> f64 {
+        let around = Around::of(place, from, self.size);
+        let (wx, wz) = (weights(around.t.x), weights(around.t.y));
+        (0..4)
+            .map(|row| wz[row] * dot(&around.row(&self.height, row), &wx))
+            .sum()
+    }
+}
+
+/// The map from places at rest to those at the moment.
+struct Map {
+    size: usize,
+    /// Coefficients of the displacement, in samples.
+    displacement: Vec<DVec2>,
+}
+
+impl Map {
     /// Where the point rests that is displaced to the sample `place`, in samples from there. `None` if Newton's method fails.
-    fn origin_of(&self, place: [i64; 2], choppiness: f64) -> Option<DVec2> {
+    fn origin_of(&self, place: [i64; 2]) -> Option<DVec2> {
         let offset = |from: DVec2| {
             let (displacement, strain) = self.displacement_at(place, from);
-            (from + choppiness * displacement, choppiness * strain)
+            (from + displacement, strain)
         };
         let mut from = DVec2::ZERO;
         let (mut off, mut strain) = offset(from);
         for _ in 0..MOST_STEPS {
-            if off.length() <= FOUND {
-                return Some(from);
-            }
             let mut step = (DMat2::IDENTITY + strain).inverse() * off;
+            if off.length() <= NEAR {
+                return Some(from - step);
+            }
             for halvings in 0.. {
                 if halvings == MOST_STEPS {
                     return None;
@@ -125,7 +146,7 @@ impl Choppy {
         None
     }
 
-    /// Displacement and strain at `from`, in samples from the sample `place`, at a choppiness of 1.
+    /// Displacement and strain at `from`, in samples from the sample `place`.
     fn displacement_at(&self, place: [i64; 2], from: DVec2) -> (DVec2, DMat2) {
         let around = Around::of(place, from, self.size);
         let (wx, dx) = (weights(around.t.x), slopes(around.t.x));
@@ -133,21 +154,13 @@ impl Choppy {
         let mut value = DVec2::ZERO;
         let mut strain = DMat2::ZERO;
         for row in 0..4 {
-            let [x, z] = self.displacement.each_ref().map(|of| around.row(of, row));
-            let across = DVec2::new(dot(&x, &wx), dot(&z, &wx));
+            let [a, b, c, d] = around.row(&self.displacement, row);
+            let across = a * wx[0] + b * wx[1] + c * wx[2] + d * wx[3];
             value += wz[row] * across;
-            strain.x_axis += wz[row] * DVec2::new(dot(&x, &dx), dot(&z, &dx));
+            strain.x_axis += wz[row] * (a * dx[0] + b * dx[1] + c * dx[2] + d * dx[3]);
             strain.y_axis += dz[row] * across;
         }
         (value, strain)
-    }
-
-    fn height_at(&self, place: [i64; 2], from: DVec2) -> f64 {
-        let around = Around::of(place, from, self.size);
-        let (wx, wz) = (weights(around.t.x), weights(around.t.y));
-        (0..4)
-            .map(|row| wz[row] * dot(&around.row(&self.height, row), &wx))
-            .sum()
     }
 }
 
@@ -171,51 +184,63 @@ impl Around {
         }
     }
 
-    fn row(&self, coefficients: &[f64], row: usize) -> [f64; 4] {
+    fn row<T: Copy>(&self, coefficients: &[T], row: usize) -> [T; 4] {
         self.columns
             .map(|column| coefficients[self.starts[row] + column])
     }
 }
 
-/// The largest compression at the points of a row of cells that are half a step apart. Rows have three more coefficients than cells.
+/// The largest compression at the points of a row of cells that are half a step apart. Rows are padded.
 fn compression_of_row(along_x: &[Vec<f64>; 4], along_z: &[Vec<f64>; 4]) -> f64 {
-    let down = |[a, _, c]: [f64; 3]| 0.5 * (c - a);
-    let mut most: f64 = 0.0;
+    let length = along_x[0].len();
+    let mut most: Lanes = [0.0; LANES];
     for is_between in [false, true] {
         // Coefficients along x of the displacement and of its derivative along z.
         let lines = |rows: &[Vec<f64>; 4]| -> [Vec<f64>; 2] {
-            let [a, b, c, d] = rows;
-            let columns = (0..a.len()).map(|x| [a[x], b[x], c[x], d[x]]);
-            let pairs = columns.map(|[a, b, c, d]| {
+            let [a, b, c, d] = rows.each_ref().map(|row| &row[..length]);
+            let (mut value, mut down) = (vec![0.0; length], vec![0.0; length]);
+            for x in 0..length {
                 if is_between {
-                    (between([a, b, c, d]), slope_between([a, b, c, d]))
+                    value[x] = between([a[x], b[x], c[x], d[x]]);
+                    down[x] = slope_between([a[x], b[x], c[x], d[x]]);
                 } else {
-                    (at_sample([a, b, c]), down([a, b, c]))
+                    value[x] = at_sample([a[x], b[x], c[x]]);
+                    down[x] = 0.5 * (c[x] - a[x]);
                 }
-            });
-            let (values, downs) = pairs.unzip();
-            [values, downs]
+            }
+            [value, down]
         };
         let ([x, x_down], [z, z_down]) = (lines(along_x), lines(along_z));
-        let strains = |i: usize| {
-            let four = |line: &[f64]| [line[i], line[i + 1], line[i + 2], line[i + 3]];
-            let three = |line: &[f64]| [line[i], line[i + 1], line[i + 2]];
-            let at = [
-                down(three(&x)),
-                0.5 * (at_sample(three(&x_down)) + down(three(&z))),
-                at_sample(three(&z_down)),
-            ];
-            let beside = [
-                slope_between(four(&x)),
-                0.5 * (between(four(&x_down)) + slope_between(four(&z))),
-                between(four(&z_down)),
-            ];
-            [at, beside]
-        };
-        for [xx, xz, zz] in (0..x.len() - 3).flat_map(strains) {
-            let compression = (0.5 * (xx - zz)).hypot(xz) - 0.5 * (xx + zz);
-            most = most.max(compression);
+        for first in (0..length - LANES).step_by(LANES) {
+            let [x, x_down, z, z_down] = [&x, &x_down, &z, &z_down].map(|line| block(line, first));
+            raise(&mut most, |i| {
+                compression(
+                    0.5 * (x[i + 2] - x[i]),
+                    0.5 * (at_sample(three(x_down, i)) + 0.5 * (z[i + 2] - z[i])),
+                    at_sample(three(z_down, i)),
+                )
+            });
+            raise(&mut most, |i| {
+                compression(
+                    slope_between(four(x, i)),
+                    0.5 * (between(four(x_down, i)) + slope_between(four(z, i))),
+                    between(four(z_down, i)),
+                )
+            });
         }
     }
-    most
+    most.into_iter().fold(0.0, f64::max)
+}
+
+/// Minus the smaller eigenvalue of a symmetric matrix.
+fn compression(xx: f64, xz: f64, zz: f64) -> f64 {
+    (0.25 * (xx - zz) * (xx - zz) + xz * xz).sqrt() - 0.5 * (xx + zz)
+}
+
+fn three(line: &[f64; LANES + 3], i: usize) -> [f64; 3] {
+    [line[i], line[i + 1], line[i + 2]]
+}
+
+fn four(line: &[f64; LANES + 3], i: usize) -> [f64; 4] {
+    [line[i], line[i + 1], line[i + 2], line[i + 3]]
 }
