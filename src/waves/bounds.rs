@@ -35,7 +35,7 @@ impl Bounds {
         let row = |z: usize| padded(&coefficients[z % height * width..][..width]);
         let sweep = |first: usize, count: usize, slopes: &Slopes| {
             let rows: Vec<Vec<f64>> = (first..first + count + 3).map(row).collect();
-            let mut sweep = Sweep::of(width, step, slopes.clone());
+            let mut sweep = Sweep::of(width, step, *slopes);
             for rows in rows.windows(4) {
                 sweep.row([&rows[0], &rows[1], &rows[2], &rows[3]]);
             }
@@ -126,12 +126,13 @@ fn larger(value: f64, most: f64) -> f64 {
 }
 
 pub(super) fn raise(most: &mut Lanes, value: impl Fn(usize) -> f64) {
-    for lane in 0..LANES {
-        most[lane] = larger(value(lane), most[lane]);
+    for (lane, most) in most.iter_mut().enumerate() {
+        *most = larger(value(lane), *most);
     }
 }
 
 /// What was found in some rows.
+#[derive(Clone, Copy)]
 struct Most {
     /// Largest magnitudes: of the coefficients, of the heights at the points, and of the coefficients' differences, which are
     /// coefficients of derivatives, whose weights add up to 1: xx, xz, zz, xxx, xxz, xzz, zzz.
@@ -297,7 +298,7 @@ pub(super) fn slope_between([a, b, c, d]: [f64; 4]) -> f64 {
 
 /// The largest slopes along all directions. Few slopes have to be looked at in all of them: those outside of an ellipse that lies within
 /// the polygon of the largest so far.
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 struct Slopes {
     directions: [DVec2; DIRECTIONS],
     most: [f64; DIRECTIONS],

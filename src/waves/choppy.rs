@@ -46,8 +46,7 @@ impl Choppy {
     pub(super) fn heights(&self, choppiness: f64) -> Result<Displaced, f64> {
         let compression = self.compression();
         let strain = choppiness * compression;
-        // Also if it is not a number.
-        if !(strain <= MOST_STRAIN) {
+        if strain > MOST_STRAIN {
             return Err(MOST_STRAIN / compression);
         }
         let pairs = self.displacement[0].iter().zip(&self.displacement[1]);
