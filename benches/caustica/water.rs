@@ -21,10 +21,13 @@ pub(crate) fn water(effort: Effort) -> Result<Table, Box<dyn Error>> {
         "kind": "ripples", "min_m": [-1, -1], "max_m": [1, 1], "samples": 256,
         "drops": [{ "position_m": [0.2, 0.1], "radius_m": 0.05, "height_m": 0.01, "at_s": -3 }]
     });
+    let mut choppy = sea(512);
+    choppy["choppiness"] = json!(0.8);
     for (name, samples, waves) in [
         ("a sea", 256, sea(256)),
         ("a sea", 512, sea(512)),
         ("a sea", 1024, sea(1024)),
+        ("a choppy sea", 512, choppy),
         ("a basin", 256, basin),
     ] {
         eprintln!("water, {name} of {samples} samples …");
@@ -54,7 +57,7 @@ fn bare(waves: &Value) -> Result<ResolvedScene, Box<dyn Error>> {
 /// The surface of a frame, at 24 frames a second.
 fn surface(scene: &mut ResolvedScene, frame: u32) -> Result<(), Box<dyn Error>> {
     scene.scene.time_s = f64::from(frame) / 24.0;
-    let surface = Surface::of(scene);
+    let surface = Surface::of(scene)?;
     if surface.max_slope() > 0.0 {
         Ok(())
     } else {

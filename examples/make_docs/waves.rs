@@ -211,7 +211,7 @@ fn measure(
         let mut resolved = scene(water, moment as f64 / 25.0)?;
         resolved.kept = first.kept.clone();
         let started = Instant::now();
-        let surface = Surface::of(&resolved);
+        let surface = Surface::of(&resolved)?;
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
         std::hint::black_box(surface);
         let started = Instant::now();
@@ -248,7 +248,7 @@ fn measure(
         .sum();
     let all: f64 = truth.irradiance.iter().map(|texel| texel[0]).sum();
 
-    let surface = Surface::of(&first);
+    let surface = Surface::of(&first)?;
     let place = |pixel: u32| HALF_M * ((f64::from(pixel) + 0.5) * 2.0 / f64::from(SIDE) - 1.0);
     let points: Vec<_> = (0..SIDE * SIDE)
         .map(|index| surface.at(place(index % SIDE), place(index / SIDE)))

@@ -62,11 +62,11 @@ impl SceneFacts {
     /// The facts of a validated scene that is rendered with `method`. Its only warnings are those about lights that are left out.
     ///
     /// # Errors
-    /// Too many lights in the air, and lights whose refracted rays are too flat to trace.
+    /// Too many lights in the air, lights whose refracted rays are too flat to trace, and seas that are too choppy at this moment.
     pub fn of(resolved: &ResolvedScene, method: MethodFacts) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let origin_m = origin(resolved);
-        let surface = water::surface_around(resolved, origin_m);
+        let surface = water::surface_around(resolved, origin_m)?;
         let mut quality = scene.quality.clone();
         let output = OutputFacts::of(scene, origin_m);
         if output.is_floor_map() {

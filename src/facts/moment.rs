@@ -8,10 +8,10 @@ use crate::scene::ResolvedScene;
 
 impl SceneFacts {
     /// The facts and warnings of `resolved`, which differs from the scene of these facts only in `time_s`. `None` if more than the surface
-    /// changes and the facts must be computed again.
+    /// changes and the facts must be computed again, or found to have an error.
     pub fn at_time_of(&self, resolved: &ResolvedScene) -> Option<Self> {
         let scene = &resolved.scene;
-        let surface = surface_around(resolved, self.origin_m);
+        let surface = surface_around(resolved, self.origin_m).ok()?;
         // Windows, dry objects, level maps and warnings depend on these bounds.
         if surface.bounds_change_with_time() {
             return None;

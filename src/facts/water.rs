@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{ResolvedScene, Water};
+use crate::scene::{ResolvedScene, SceneError, Water};
 use crate::waves::Surface;
 
 /// The water: its surface at the moment of the frame, and its optics.
@@ -47,8 +47,14 @@ impl WaterFacts {
 }
 
 /// The surface of a scene at its moment, around the local origin `origin_m`.
-pub(super) fn surface_around(resolved: &ResolvedScene, origin_m: DVec3) -> Surface {
-    Surface::of(resolved).recentred(DVec2::new(origin_m.x, origin_m.z))
+///
+/// # Errors
+/// As [`Surface::of`].
+pub(super) fn surface_around(
+    resolved: &ResolvedScene,
+    origin_m: DVec3,
+) -> Result<Surface, SceneError> {
+    Ok(Surface::of(resolved)?.recentred(DVec2::new(origin_m.x, origin_m.z)))
 }
 
 /// A band of wavelengths: optics of the water for it, and its weight in each colour channel.

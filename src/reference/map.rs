@@ -52,7 +52,9 @@ pub struct ReferenceMap {
     pub height: u32,
     /// Irradiance per texel, W/m², row 0 at min z.
     pub irradiance: Vec<[f64; 3]>,
-    /// Estimated relative L1 error of `irradiance`: ‖A − B‖₁ / ‖A + B‖₁ of two independent halves.
+    /// Estimated relative L1 error of `irradiance`: ‖A − B‖₁ / ‖A + B‖₁ of two independent halves. Of seas and basins comes the error of
+    /// their grids, which both halves share: where it was measured 1.5·10⁻⁴ with up to 1024 samples, 1.4·10⁻³ with 2048, if the
+    /// shortest waves have four samples; 5·10⁻⁵ and 3·10⁻⁴ if they have 6.4.
     pub relative_error: f64,
     /// Rays in the map (both halves, all suns; those of earlier rounds not counted).
     pub rays: u64,
@@ -148,7 +150,7 @@ impl<'a, const K: usize> Counter<'a, K> {
         let scene = &resolved.scene;
         let map = FloorMap::of(scene)?;
         let occluders = Occluders::of(resolved, map.origin_m)?;
-        let surface = Surface::refined(resolved, REFINEMENT).recentred(map.origin_m);
+        let surface = Surface::refined(resolved, REFINEMENT)?.recentred(map.origin_m);
         check_surface(&surface)?;
         let size_m = map.size_m();
         let mut targets = vec![Target {

@@ -65,7 +65,7 @@ impl Place {
         let scene = &resolved.scene;
         let extinction_per_m = check_water(&scene.water)?;
         let (suns, lamps) = (suns(scene)?, point_lights(scene)?);
-        let surface = Surface::refined(resolved, REFINEMENT).recentred(middle_m);
+        let surface = Surface::refined(resolved, REFINEMENT)?.recentred(middle_m);
         check_surface(&surface)?;
         let occluders = Occluders::of(resolved, middle_m)?;
         let origin_m = DVec3::new(middle_m.x, scene.water.level_m, middle_m.y);

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::scene::SceneError;
+
 /// When tracing stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceSettings {
@@ -157,6 +159,9 @@ pub enum ReferenceError {
         /// Length of `objects`.
         objects: usize,
     },
+    /// The water of the scene cannot be computed.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     /// The caller cancelled.
     #[error("cancelled before the reference was good enough")]
     Cancelled,

@@ -74,6 +74,8 @@ pub const FETCH: Range = Range::new(1.0, 1e7, "m");
 pub const GAMMA: Range = Range::new(1.0, 10.0, "");
 /// `swell`.
 pub const SWELL: Range = Range::new(0.0, 1.0, "");
+/// `choppiness`.
+pub const CHOPPINESS: Range = Range::new(0.0, 2.0, "");
 /// `significant_height_m`.
 pub const SIGNIFICANT_HEIGHT: Range = Range::new(0.0, 100.0, "m");
 /// `tile_m`, and the sides of a basin.

@@ -157,6 +157,7 @@ fn spectrum(findings: &mut Findings, waves: &SpectrumWaves, at: &dyn Fn(&str) ->
     findings.number(at("fetch_m"), waves.fetch_m, &ranges::FETCH);
     findings.number(at("gamma"), waves.gamma, &ranges::GAMMA);
     findings.number(at("swell"), waves.swell, &ranges::SWELL);
+    findings.number(at("choppiness"), waves.choppiness, &ranges::CHOPPINESS);
     let is_sound = findings.number(at("tile_m"), waves.tile_m, &ranges::TILE);
     let is_sound =
         is_sound & findings.integer::<ranges::SpectrumSamples>(&at("samples"), waves.samples);

@@ -161,6 +161,12 @@ pub struct SpectrumWaves {
     /// scaled to it exactly, if the spectrum has any wave in its band. Default: what the spectrum has there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub significant_height_m: Option<f64>,
+    /// How far surface points move to the sides, in heights of their waves, 0 (not at all) … 2; at 1 they move on circles, as in deep
+    /// water. Crests become sharper than troughs. A sea that folds over itself, or nearly, at the moment of a frame is refused with
+    /// the choppiness that it allows there. The mean height stays 0. `significant_height_m`, and the warning `waves_smoothed`,
+    /// are about the waves before they are moved to the sides. Default 0.
+    #[serde(default)]
+    pub choppiness: f64,
     /// Side of the tile, m, 0.01 … 10⁴.
     pub tile_m: f64,
     /// Samples along each side of the tile: a power of two, 64 … 2048. Default 512.

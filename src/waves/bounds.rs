@@ -9,12 +9,12 @@ use rayon::prelude::*;
 const DIRECTIONS: usize = 32;
 
 /// Values that are treated together, so that the compiler uses vector instructions.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// Rows of cells that a task treats.
 const ROWS: usize = 16;
 
-type Lanes = [f64; LANES];
+pub(super) type Lanes = [f64; LANES];
 
 /// Bounds of a spline and its derivatives, true at every point.
 #[derive(Debug, PartialEq)]
@@ -35,7 +35,7 @@ impl Bounds {
         let row = |z: usize| padded(&coefficients[z % height * width..][..width]);
         let sweep = |first: usize, count: usize, slopes: &Slopes| {
             let rows: Vec<Vec<f64>> = (first..first + count + 3).map(row).collect();
-            let mut sweep = Sweep::of(width, step, slopes.clone());
+            let mut sweep = Sweep::of(width, step, *slopes);
             for rows in rows.windows(4) {
                 sweep.row([&rows[0], &rows[1], &rows[2], &rows[3]]);
             }
@@ -96,13 +96,26 @@ impl Bounds {
     }
 }
 
+/// Largest magnitudes of the third differences of coefficients, which repeat after `size`: xxx, xxz, xzz, zzz.
+pub(super) fn third_differences(coefficients: &[f64], [width, height]: [usize; 2]) -> [f64; 4] {
+    let row = |z: usize| padded(&coefficients[z % height * width..][..width]);
+    let found = (0..height).into_par_iter().map(|z| {
+        let mut sweep = Sweep::of(width, DVec2::ONE, Slopes::default());
+        let rows = [0, 1, 2, 3].map(|i| row(z + i));
+        sweep.differences(rows.each_ref().map(Vec::as_slice));
+        sweep.most()
+    });
+    let [.., xxx, xxz, xzz, zzz] = found.reduce(Most::default, Most::joined).differences;
+    [xxx, xxz, xzz, zzz]
+}
+
 /// Unit vector of a direction.
 fn direction(i: usize) -> DVec2 {
     DVec2::from_angle(TAU * i as f64 / DIRECTIONS as f64)
 }
 
 /// A row that repeats, with more of it at its end, so that whole blocks of lanes and their neighbours are there.
-fn padded(row: &[f64]) -> Vec<f64> {
+pub(super) fn padded(row: &[f64]) -> Vec<f64> {
     let length = row.len().next_multiple_of(LANES) + LANES;
     row.iter().copied().cycle().take(length).collect()
 }
@@ -112,13 +125,14 @@ fn larger(value: f64, most: f64) -> f64 {
     if value > most { value } else { most }
 }
 
-fn raise(most: &mut Lanes, value: impl Fn(usize) -> f64) {
-    for lane in 0..LANES {
-        most[lane] = larger(value(lane), most[lane]);
+pub(super) fn raise(most: &mut Lanes, value: impl Fn(usize) -> f64) {
+    for (lane, most) in most.iter_mut().enumerate() {
+        *most = larger(value(lane), *most);
     }
 }
 
 /// What was found in some rows.
+#[derive(Clone, Copy)]
 struct Most {
     /// Largest magnitudes: of the coefficients, of the heights at the points, and of the coefficients' differences, which are
     /// coefficients of derivatives, whose weights add up to 1: xx, xz, zz, xxx, xxz, xzz, zzz.
@@ -261,30 +275,30 @@ impl Sweep {
 }
 
 /// A block of lanes and their neighbours.
-fn block(row: &[f64], first: usize) -> &[f64; LANES + 3] {
+pub(super) fn block(row: &[f64], first: usize) -> &[f64; LANES + 3] {
     row[first..first + LANES + 3]
         .try_into()
         .expect("rows are padded")
 }
 
 /// The spline at the middle one of three coefficients.
-fn at_sample([a, b, c]: [f64; 3]) -> f64 {
+pub(super) fn at_sample([a, b, c]: [f64; 3]) -> f64 {
     (a + c) * (1.0 / 6.0) + b * (2.0 / 3.0)
 }
 
 /// The spline half-way between the middle two of four coefficients.
-fn between([a, b, c, d]: [f64; 4]) -> f64 {
+pub(super) fn between([a, b, c, d]: [f64; 4]) -> f64 {
     (a + d) * (1.0 / 48.0) + (b + c) * (23.0 / 48.0)
 }
 
 /// Its derivative there, per step.
-fn slope_between([a, b, c, d]: [f64; 4]) -> f64 {
+pub(super) fn slope_between([a, b, c, d]: [f64; 4]) -> f64 {
     (d - a) * 0.125 + (c - b) * 0.625
 }
 
 /// The largest slopes along all directions. Few slopes have to be looked at in all of them: those outside of an ellipse that lies within
 /// the polygon of the largest so far.
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 struct Slopes {
     directions: [DVec2; DIRECTIONS],
     most: [f64; DIRECTIONS],

@@ -6,6 +6,7 @@
 //! - `sea`, `ripples`: water that is computed on a grid (`grid`), and `spline`, the surface through the samples, with its `bounds`;
 //! - `height_field`: water from samples that a user brings, and `gradient`, heights from slopes;
 //! - `spectrum`, `chance`, `clock`, `fourier`: what a sea is made of: variances, random numbers, phases, and the sum of its waves;
+//! - `choppy`: a sea whose points move to the sides as well;
 //! - `harmonics`: the modes of a basin, added up on a grid;
 //! - `open_water`: a basin whose walls absorb, without obstacles;
 //! - `tank`: a basin with obstacles, in steps of time, on the samples of `cells`: `footprint` is where obstacles cut the water, `leapfrog`
@@ -17,6 +18,7 @@
 mod bounds;
 mod cells;
 mod chance;
+mod choppy;
 mod clock;
 mod continued;
 mod footprint;

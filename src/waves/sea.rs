@@ -11,6 +11,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 
+use super::choppy::Choppy;
 use super::clock::{Clock, Unit};
 use super::grid::{Computed, Edges};
 use super::spectrum::Spectrum;
@@ -18,44 +19,97 @@ use super::spline::{self, Spline};
 use super::{chance, fourier};
 use crate::kept::Key;
 use crate::physics::turns::sin_cos_turns;
-use crate::scene::{ResolvedScene, Scene, SpectrumModel, SpectrumWaves};
+use crate::scene::{Issue, ResolvedScene, Scene, SceneError, SpectrumModel, SpectrumWaves};
 
 /// Mean squared heights below this, m², are none.
 const NO_VARIANCE_M2: f64 = 1e-200;
 
-/// The sea at `scene.time_s` on its tile, whose first sample is at (0, 0), with `refinement` times `waves.samples` samples along each side.
+/// The sea of the scene's wave `index` at `scene.time_s` on its tile, whose first sample is at (0, 0), with `refinement` times
+/// `waves.samples` samples along each side.
+///
+/// # Errors
+/// A choppiness with which the surface would fold.
 pub(super) fn computed(
     waves: &SpectrumWaves,
+    index: usize,
     resolved: &ResolvedScene,
     refinement: u32,
-) -> Computed {
-    let samples = (waves.samples * refinement) as usize;
+) -> Result<Computed, SceneError> {
+    let size = (waves.samples * refinement) as usize;
+    let step_m = DVec2::splat(waves.tile_m / size as f64);
     let sea = Sea::kept(waves, resolved);
-    let coefficients = if sea.columns.is_empty() {
-        vec![0.0; samples * samples]
+    let mut shortest_wave_m = waves.band_m()[0];
+    let spline = if sea.columns.is_empty() {
+        shortest_wave_m = f64::INFINITY;
+        let flat = vec![0.0; size * size];
+        Spline::of(Edges::Repeats, flat, [size; 2], step_m, DVec2::ZERO)
     } else {
         let moved = sea.at(resolved.scene.time_s);
         // These are no heights but the coefficients of the spline through them.
-        let scale = |i: usize| spline::in_coefficients(i as f64 / samples as f64);
-        fourier::values(&moved, samples, scale)
-    };
-    let step_m = DVec2::splat(waves.tile_m / samples as f64);
-    Computed {
-        spline: Spline::of(
-            Edges::Repeats,
-            coefficients,
-            [samples; 2],
-            step_m,
-            DVec2::ZERO,
-        ),
-        shortest_wave_m: if sea.columns.is_empty() {
-            f64::INFINITY
+        let scale = |i: usize| spline::in_coefficients(i as f64 / size as f64);
+        let height = fourier::values(&moved, size, scale);
+        if waves.choppiness == 0.0 {
+            Spline::of(Edges::Repeats, height, [size; 2], step_m, DVec2::ZERO)
         } else {
-            waves.band_m()[0]
-        },
+            let displacement = [0, 1].map(|axis| {
+                let along = displaced(&moved, axis, step_m.x);
+                fourier::values(&along, size, scale)
+            });
+            let choppy = Choppy {
+                size,
+                height,
+                displacement,
+            };
+            let displaced = choppy
+                .heights(waves.choppiness)
+                .map_err(|most| folds(waves, index, resolved.scene.time_s, most))?;
+            // Crests are narrower, as those of a Gerstner wave of this steepness; but what the samples do not carry is not there.
+            let narrowed_m = shortest_wave_m * (1.0 - displaced.strain).powf(1.5);
+            shortest_wave_m = narrowed_m.max(waves.shortest_carried_m());
+            Spline::through(displaced.heights_m, [size; 2], step_m, DVec2::ZERO)
+        }
+    };
+    Ok(Computed {
+        spline,
+        shortest_wave_m,
         slope_lost: sea.slope_lost,
         description: description(waves.model).to_owned(),
-    }
+    })
+}
+
+/// The displacement along x (0) or z (1), in units of `unit_m`: i k/|k| times the height.
+fn displaced(heights: &fourier::HalfSpectrum, axis: usize, unit_m: f64) -> fourier::HalfSpectrum {
+    let reach = heights.len() as f64 - 1.0;
+    let columns = heights.iter().enumerate();
+    columns
+        .map(|(i, column)| {
+            let coefficients = column.iter().enumerate();
+            coefficients
+                .map(|(row, coefficient)| {
+                    let k = [i as f64, row as f64 - reach];
+                    let length = k[0].hypot(k[1]);
+                    let share = if length > 0.0 { k[axis] / length } else { 0.0 };
+                    Complex64::I * coefficient * (share / unit_m)
+                })
+                .collect()
+        })
+        .collect()
+}
+
+fn folds(waves: &SpectrumWaves, index: usize, time_s: f64, most: f64) -> SceneError {
+    // Rounded down, so that what is named is accepted.
+    let most = (most * 1e3).floor() * 1e-3;
+    Issue::invalid(
+        format!("/water/waves/{index}/choppiness"),
+        format!(
+            "with a choppiness of {} crests of this sea fold over themselves, or nearly, at {time_s} s",
+            waves.choppiness
+        ),
+        format!(
+            "at most {most:.3} at this time; more of it with lower or fewer short waves (`significant_height_m`, `min_wavelength_m`)"
+        ),
+    )
+    .into()
 }
 
 fn description(model: SpectrumModel) -> &'static str {

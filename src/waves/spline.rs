@@ -196,9 +196,9 @@ impl Spline {
     /// Calls `add` with the four coefficients of each of the four rows from `first` on.
     fn rows_at(&self, first: [i64; 2], mut add: impl FnMut(usize, &[f64; 4])) {
         let [width, height] = self.size;
-        let columns: [usize; 4] = std::array::from_fn(|i| wrapped(first[0] + i as i64, width));
-        for row in 0..4 {
-            let start = wrapped(first[1] + row as i64, height) * width;
+        let columns = four_from(first[0], width);
+        for (row, line) in four_from(first[1], height).into_iter().enumerate() {
+            let start = line * width;
             add(
                 row,
                 &columns.map(|column| self.coefficients[start + column]),
@@ -270,16 +270,23 @@ pub(super) fn carried(frequency: f64) -> f64 {
     sinc.powi(4) * in_coefficients(frequency)
 }
 
-fn wrapped(index: i64, count: usize) -> usize {
-    index.rem_euclid(count as i64) as usize
+/// Four neighbouring indices from `first` on, of `count` that repeat.
+pub(super) fn four_from(first: i64, count: usize) -> [usize; 4] {
+    let mut index = first.rem_euclid(count as i64) as usize;
+    // A division is slow: one is enough.
+    std::array::from_fn(|_| {
+        let this = index;
+        index = if index + 1 == count { 0 } else { index + 1 };
+        this
+    })
 }
 
-fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+pub(super) fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
 /// Weights of the four coefficients around a point at `t`, 0 … 1, between the middle two.
-fn weights(t: f64) -> [f64; 4] {
+pub(super) fn weights(t: f64) -> [f64; 4] {
     let s = 1.0 - t;
     [
         s * s * s / 6.0,
@@ -290,7 +297,7 @@ fn weights(t: f64) -> [f64; 4] {
 }
 
 /// First derivatives of the weights.
-fn slopes(t: f64) -> [f64; 4] {
+pub(super) fn slopes(t: f64) -> [f64; 4] {
     let s = 1.0 - t;
     [
         -0.5 * s * s,

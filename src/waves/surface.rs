@@ -15,7 +15,7 @@ use super::trochoids::Trochoids;
 use super::{ripples, sea};
 use crate::kept::Key;
 use crate::physics::refraction;
-use crate::scene::{HeightField, ResolvedScene, Scene, Wave};
+use crate::scene::{HeightField, ResolvedScene, Scene, SceneError, Wave};
 
 /// Height and slope of the water at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,17 +112,20 @@ impl Grid {
         index: usize,
         refinement: u32,
         footprint: Option<&Footprint>,
-        compute: impl FnOnce(u32) -> Computed,
-    ) -> Self {
-        let kept = resolved
-            .kept
-            .get_or(key(&resolved.scene, index, refinement, footprint), || {
-                KeptGrid::of(compute(refinement), None)
-            });
-        Self {
+        compute: impl FnOnce(u32) -> Result<Computed, SceneError>,
+    ) -> Result<Self, SceneError> {
+        let key = key(&resolved.scene, index, refinement, footprint);
+        let kept = match resolved.kept.get::<KeptGrid>(&key) {
+            Some(kept) => kept,
+            None => {
+                let (grid, bytes) = KeptGrid::of(compute(refinement)?, None);
+                resolved.kept.put(key, grid, bytes)
+            }
+        };
+        Ok(Self {
             idle_obstacles: footprint.map_or(Vec::new(), |footprint| footprint.idle.clone()),
             ..Self::kept(index, &kept)
-        }
+        })
     }
 
     /// The grid of the scene's wave `index`, a height field.
@@ -190,7 +193,10 @@ fn within(most: u32, refinement: u32, samples: u32) -> u32 {
 impl Surface {
     /// The surface of a scene at its `time_s`; the origin is that of the scene. Water on a grid that was computed before is taken from
     /// [`ResolvedScene::kept`].
-    pub fn of(resolved: &ResolvedScene) -> Self {
+    ///
+    /// # Errors
+    /// A sea that is too choppy at this moment.
+    pub fn of(resolved: &ResolvedScene) -> Result<Self, SceneError> {
         Self::refined(resolved, 1)
     }
 
@@ -198,7 +204,15 @@ impl Surface {
     /// for references. Of a grid that would have more than 4096 samples along a side, the refinement is smaller. Of basins with obstacles it
     /// is at most 2: their waves are computed anew on the finer grid, in steps of half the time. The spline of a height field is its surface,
     /// and is not refined.
-    pub fn refined(resolved: &ResolvedScene, refinement: u32) -> Self {
+    ///
+    /// Of waves of four samples, the shortest that a sea may have, a refinement of 4 misses 7·10⁻⁵ of the mean square slope, one of 2
+    /// 1.2·10⁻³. Measured at seas of 128 samples over a floor at 1.5 m, maps then differ from those of a refinement of 16 by 5·10⁻⁵
+    /// (relative L1) if the shortest waves have 6.4 samples, and by 1.5·10⁻⁴ if they have four; with a refinement of 2 by 3·10⁻⁴ and
+    /// 1.4·10⁻³.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn refined(resolved: &ResolvedScene, refinement: u32) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
         let waves = scene.water.waves.iter().enumerate();
         let grids = waves.filter_map(|(index, wave)| match wave {
@@ -206,7 +220,7 @@ impl Surface {
             Wave::Spectrum(waves) => {
                 let refinement = within(MAX_REFINED, refinement, waves.samples);
                 Some(Grid::of(resolved, index, refinement, None, |refinement| {
-                    sea::computed(waves, resolved, refinement)
+                    sea::computed(waves, index, resolved, refinement)
                 }))
             }
             Wave::Ripples(waves) => {
@@ -225,17 +239,18 @@ impl Surface {
                     refinement,
                     footprint,
                     |refinement| {
-                        ripples::heights(waves, scene, refinement, footprint, &resolved.kept).into()
+                        let kept = &resolved.kept;
+                        Ok(ripples::heights(waves, scene, refinement, footprint, kept).into())
                     },
                 ))
             }
-            Wave::HeightField(waves) => Some(Grid::of_field(resolved, index, waves)),
+            Wave::HeightField(waves) => Some(Ok(Grid::of_field(resolved, index, waves))),
         });
-        Self {
+        Ok(Self {
             sines: Sines::of(scene),
             trochoids: Trochoids::of(scene),
-            grids: grids.collect(),
-        }
+            grids: grids.collect::<Result<_, _>>()?,
+        })
     }
 
     /// The same surface with (x, z) = (0, 0) moved to `origin_m`.

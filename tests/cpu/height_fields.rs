@@ -22,7 +22,7 @@ fn with(field: Value) -> Value {
 }
 
 fn surface(field: Value, file: Vec<u8>) -> Surface {
-    Surface::of(&files::scene(with(field), &[file]))
+    Surface::of(&files::scene(with(field), &[file])).unwrap()
 }
 
 /// The issues of a scene that is refused.
@@ -289,7 +289,7 @@ fn height_at(more: &Value, time_s: f64, sample: usize) -> f64 {
     }
     let mut scene = with(field);
     scene["time_s"] = json!(time_s);
-    let surface = Surface::of(&files::scene(scene, &[sequence(7)]));
+    let surface = Surface::of(&files::scene(scene, &[sequence(7)])).unwrap();
     surface
         .at(0.1 * (sample % 6) as f64, 0.1 * (sample / 6) as f64)
         .height_m
@@ -334,6 +334,7 @@ fn frames_may_be_files_of_their_own_and_repeat() {
     for (time_s, height_m) in [(0, 0.1), (1, 0.2), (2, 0.1)] {
         scene["time_s"] = json!(time_s);
         let found = Surface::of(&files::scene(scene.clone(), &ids))
+            .unwrap()
             .at(0.3, 0.4)
             .height_m;
         assert!((found - height_m).abs() < 1e-14);
@@ -341,6 +342,7 @@ fn frames_may_be_files_of_their_own_and_repeat() {
     // The mean of all frames is the water at rest.
     scene["water"]["waves"][0]["rest_m"] = Value::Null;
     let found = Surface::of(&files::scene(scene, &ids))
+        .unwrap()
         .at(0.3, 0.4)
         .height_m;
     assert!((found - (0.1 - 0.4 / 3.0)).abs() < 1e-14, "{found}");
@@ -374,7 +376,7 @@ fn slopes_of_a_surface_give_it_back() {
     let field =
         json!({ "holds": "slopes", "sample_m": [0.02, 0.015], "min_m": [0, 0], "rim_m": 0.2 });
     let resolved = files::scene(with(field), &[npy(&[70, 90, 2], &slopes)]);
-    let surface = Surface::of(&resolved);
+    let surface = Surface::of(&resolved).unwrap();
     let mean = heights.iter().sum::<f64>() / heights.len() as f64;
     let mut worst: f64 = 0.0;
     for z in 14..56 {
@@ -725,7 +727,7 @@ fn the_same_field_is_computed_once_and_a_changed_one_anew() {
     };
     let file = || npy(&[48, 64], &periodic_file(0));
     let first = scene(json!({}), 0.0, file());
-    let surface = Surface::of(&first);
+    let surface = Surface::of(&first).unwrap();
     let bytes = first.kept.bytes();
     assert!(bytes >= 64 * 48 * 8);
     // Of a single frame the surface does not depend on time.
@@ -734,7 +736,10 @@ fn the_same_field_is_computed_once_and_a_changed_one_anew() {
             kept: first.kept.clone(),
             ..scene(more, time_s, file)
         };
-        (Surface::of(&again) == surface, again.kept.bytes() == bytes)
+        (
+            Surface::of(&again).unwrap() == surface,
+            again.kept.bytes() == bytes,
+        )
     };
     assert_eq!(at(json!({}), 7.0, file()), (true, true));
     assert_eq!(at(json!({ "scale_m": 2 }), 0.0, file()), (false, false));

@@ -110,7 +110,7 @@ impl Basin {
     fn at(&self, time_s: f64) -> Surface {
         let mut resolved = self.resolved.clone();
         resolved.scene.time_s = time_s;
-        Surface::of(&resolved)
+        Surface::of(&resolved).unwrap()
     }
 }
 
@@ -604,7 +604,7 @@ fn a_refined_basin_is_nearer_to_the_exact_solution() {
     let mut resolved = basin.resolved.clone();
     resolved.scene.time_s = 0.711;
     let exact = basin.exact().at(0.711);
-    let [once, twice, four] = [1, 2, 4].map(|times| Surface::refined(&resolved, times));
+    let [once, twice, four] = [1, 2, 4].map(|times| Surface::refined(&resolved, times).unwrap());
     assert!(difference(&twice, &exact) < difference(&once, &exact) / 3.6);
     assert!(twice == four);
 }

@@ -288,7 +288,7 @@ fn a_map_far_away_is_as_good_as_one_at_the_origin() {
 
 #[test]
 fn the_window_holds_all_light_that_matters() {
-    let surface = Surface::of(&resolved(SINE_POOL));
+    let surface = Surface::of(&resolved(SINE_POOL)).unwrap();
     for (elevation_deg, azimuth_deg) in [(90.0, 0.0), (60.0, 180.0), (25.0, 70.0), (4.0, -130.0)] {
         let l = direction_to_light(f64::to_radians(elevation_deg), f64::to_radians(azimuth_deg));
         let window = light_window(&surface, l, 1.333, 2.0, DVec2::NEG_ONE, DVec2::ONE);

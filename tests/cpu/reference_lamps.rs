@@ -53,7 +53,7 @@ fn waves() -> Value {
 /// Height of [`waves`] at a place, m.
 fn wave_height_m(x_m: f64, z_m: f64) -> f64 {
     let scene = pool(Vec3::ONE, json!([]), |v| v["water"]["waves"] = waves());
-    Surface::of(&scene).at(x_m, z_m).height_m
+    Surface::of(&scene).unwrap().at(x_m, z_m).height_m
 }
 
 fn error(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
@@ -94,7 +94,7 @@ fn a_lamp_a_millimetre_above_the_floor_lights_half_of_all_directions() {
 /// The map of a lamp over waves from directions that leave the light evenly, each followed to every place where it goes down through
 /// the water: waves do not shade each other.
 fn from_directions(scene: &ResolvedScene, lamp_m: DVec3, directions: u32, side: usize) -> Vec<f64> {
-    let surface = Surface::of(&scene);
+    let surface = Surface::of(&scene).unwrap();
     let crest_m = surface.max_height_m();
     let gap_m = |p: DVec3| p.y - surface.at(p.x, p.z).height_m;
     let mut texels = vec![0.0; side * side];

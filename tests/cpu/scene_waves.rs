@@ -19,7 +19,7 @@ fn gerstner() -> Value {
 fn spectrum() -> Value {
     json!({
         "kind": "spectrum", "model": "jonswap", "wind_speed_m_s": 5, "wind_direction_deg": 0, "fetch_m": 1000, "gamma": 3.3,
-        "spreading": "hasselmann", "swell": 0.1, "min_wavelength_m": 0.5, "max_wavelength_m": 10, "significant_height_m": 0.2,
+        "spreading": "hasselmann", "swell": 0.1, "choppiness": 0.2, "min_wavelength_m": 0.5, "max_wavelength_m": 10, "significant_height_m": 0.2,
         "tile_m": 20, "samples": 256, "seed": 1, "loop_s": 10
     })
 }
@@ -43,6 +43,7 @@ fn every_range_holds_its_ends_and_nothing_beyond() {
         (spectrum(), "fetch_m", [1.0, 1e7], [0.9, 1.1e7]),
         (spectrum(), "gamma", [1.0, 10.0], [0.9, 10.1]),
         (spectrum(), "swell", [0.0, 1.0], [-0.1, 1.1]),
+        (spectrum(), "choppiness", [0.0, 2.0], [-0.1, 2.1]),
         (
             spectrum(),
             "significant_height_m",

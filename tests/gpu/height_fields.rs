@@ -22,7 +22,7 @@ fn bounded(middle_m: [f64; 2]) -> (Value, Vec<u8>) {
 /// Largest difference of the heights that a camera sees from straight above from those of the CPU, m, and the number of pixels outside the field.
 fn seen_from_above(resolved: &ResolvedScene, middle_m: [f64; 2]) -> (f64, usize) {
     const PIXELS: [usize; 2] = [120, 100];
-    let surface = Surface::of(resolved);
+    let surface = Surface::of(resolved).unwrap();
     let frame = harness::render(resolved);
     let step_m = 5.0 / PIXELS[1] as f64;
     let (mut worst, mut outside): (f64, usize) = (0.0, 0);
@@ -83,7 +83,7 @@ fn field(more: Value) -> Value {
 
 /// Heights and slopes of the sine pool's water.
 fn pool_samples() -> [Vec<f64>; 3] {
-    let surface = Surface::of(&sine_pool("64"));
+    let surface = Surface::of(&sine_pool("64")).unwrap();
     let of = |part: fn(&Surface, f64, f64) -> f64| {
         sampled([SIDE; 2], [FIRST_M; 2], [STEP_M; 2], |x, z| {
             part(&surface, x, z)

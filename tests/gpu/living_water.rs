@@ -16,6 +16,8 @@ fn waters() -> Vec<(&'static str, Value)> {
         "kind": "spectrum", "model": "jonswap", "wind_speed_m_s": 4, "fetch_m": 5000, "wind_direction_deg": 40,
         "tile_m": 8, "samples": 128, "min_wavelength_m": 0.4, "seed": 3
     });
+    let mut choppy = sea.clone();
+    choppy["choppiness"] = json!(0.7);
     let ripples = json!({
         "kind": "ripples", "min_m": [-1.6, -1.2], "max_m": [1.6, 1.2], "samples": 160,
         "drops": [
@@ -31,6 +33,7 @@ fn waters() -> Vec<(&'static str, Value)> {
         ("sea", json!([sea])),
         ("ripples", json!([ripples])),
         ("all", json!([ripples, sine, gerstner, sea])),
+        ("choppy sea", json!([choppy])),
     ]
 }
 
@@ -57,7 +60,7 @@ fn the_gpu_has_the_surface_of_the_cpu() {
         });
         scene["output"] = json!({ "kind": "view", "width": 96, "height": 72, "format": "exr", "layers": ["depth"] });
         let resolved = scene_files::scene(scene);
-        let surface = Surface::of(&resolved);
+        let surface = Surface::of(&resolved).unwrap();
         let frame = harness::render(&resolved);
         let step_m = 4.2 / 72.0;
         let mut highest_m: f64 = 0.0;

@@ -58,7 +58,7 @@ fn truth(resolved: &ResolvedScene) -> Vec<[f64; 3]> {
         .map(DVec2::from);
     let [width, height] = map.size();
     let step = (max - min) / DVec2::new(f64::from(width), f64::from(height));
-    let surface = Surface::of(&resolved);
+    let surface = Surface::of(&resolved).unwrap();
     (0..height)
         .flat_map(|j| (0..width).map(move |i| DVec2::new(f64::from(i), f64::from(j))))
         .map(|at| {
@@ -75,7 +75,7 @@ fn values(frame: &Frame) -> Vec<[f64; 3]> {
 
 /// What single precision may lose: a few roundings of the values, and of the places, whose steps grow with the map's half side.
 fn tolerance(resolved: &ResolvedScene, half_m: f64) -> [f64; 2] {
-    let surface = Surface::of(&resolved);
+    let surface = Surface::of(&resolved).unwrap();
     const ROUNDINGS: f64 = 8.0 * f32::EPSILON as f64;
     let reach_m = half_m + 1.0;
     [
@@ -137,7 +137,7 @@ fn one_texel_is_the_middle_of_the_rectangle() {
     let output = json!({ "min_m": [0.3, 0.1], "max_m": [0.7, 0.2], "width": 1, "height": 1 });
     let resolved = scene_files::scene(scene(&waves, output));
     let frame = assert_is_surface("1 × 1", &resolved, 0.2);
-    let middle = Surface::of(&resolved).at(0.5, 0.15);
+    let middle = Surface::of(&resolved).unwrap().at(0.5, 0.15);
     assert!((values(&frame)[0][0] - middle.height_m).abs() < 1e-7);
 }
 

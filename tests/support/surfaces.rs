@@ -10,5 +10,5 @@ pub(crate) fn surface_of(scene: &Scene) -> Surface {
 
 /// The same from grids with `refinement` times as many samples.
 pub(crate) fn refined_surface(scene: &Scene, refinement: u32) -> Surface {
-    Surface::refined(&ResolvedScene::bare(scene.clone()), refinement)
+    Surface::refined(&ResolvedScene::bare(scene.clone()), refinement).unwrap()
 }
