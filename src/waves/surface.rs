@@ -189,7 +189,8 @@ impl Surface {
     }
 
     /// The same with `refinement` times as many samples along the sides of grids, so that their splines miss less of what they stand for;
-    /// for references. The spline of a height field is its surface, which is not refined. Of a grid that would have more than 4096 samples along a side, the refinement is smaller.
+    /// for references. The spline of a height field is its surface, which is not refined. Of a grid that would have more than 4096 samples
+    /// along a side, the refinement is smaller.
     pub fn refined(resolved: &ResolvedScene, refinement: u32) -> Self {
         let scene = &resolved.scene;
         let waves = scene.water.waves.iter().enumerate();
