@@ -47,7 +47,8 @@ pub struct HeightField {
     /// Height of 1 in the file, m, −10⁶ … 10⁶, not 0. Default 1; PNG needs `range_m` instead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale_m: Option<f64>,
-    /// Heights of 0 and 65535 in a PNG or an NPY of unsigned 16-bit integers, m, −10⁵ … 10⁵.
+    /// Heights of 0 and 65535 in a PNG or an NPY of unsigned 16-bit integers, m, −10⁵ … 10⁵. The narrower the range, the smaller the steps,
+    /// which are lenses too: 0.13 m in 16 bits, 32 samples a metre, change the irradiance 2 m down by 0.2 % in the mean.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_items = 2, max_items = 2)]
     pub range_m: Option<[f64; 2]>,
