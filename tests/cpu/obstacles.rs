@@ -295,7 +295,7 @@ fn a_drop_in_the_middle_of_a_square_stays_symmetric() {
 /// A block that fills half of the basin is a wall: what is left of the water is a reflecting basin of half the size.
 #[test]
 fn waves_are_reflected_by_a_block_as_by_a_wall() {
-    let drops = json!([{ "position_m": [-0.2, 0.1], "radius_m": 0.06, "height_m": 1.0 }]);
+    let drops = json!([{ "position_m": [-0.25, 0.1], "radius_m": 0.03, "height_m": 1.0 }]);
     let blocked = Basin::new(
         json!({ "samples": 128, "drops": drops }),
         &[(block([1.0, 1.0, 2.0]), [0.5, 0.0, 0.0])],
@@ -490,7 +490,7 @@ fn hard_cases_are_finite_and_bounded() {
         (
             json!({ "max_m": [9999, -0.49], "drops": two_drops(), "walls": "periodic" }),
             block([0.1; 3]),
-            11_000.0,
+            10.0,
         ),
     ] {
         let mut basin = Basin::new(fields, &[(mesh, [0.0; 3])]);
