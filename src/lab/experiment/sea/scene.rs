@@ -79,7 +79,7 @@ fn waves(wind_m_s: f64, seed: u32) -> Value {
 fn resolved(scene: Value) -> Result<ResolvedScene, SeaError> {
     let refused = |error: crate::scene::SceneError| SeaError::Scene(error.to_string());
     let scene = Scene::from_value(scene).map_err(refused)?;
-    methods::resolve(scene, &Limits::default(), |_| None).map_err(refused)
+    methods::resolve(scene, &Limits::default(), |_: &str| None).map_err(refused)
 }
 
 /// The map of irradiance on the floor at a place, `texels` × `texels` texels of [`texel_m`], under the sea of `seed` at `time_s`.
