@@ -206,7 +206,7 @@ impl<'a> Tank<'a> {
         let milestones = (1..=number / spacing).map(|i| i * spacing);
         let milestone = milestones
             .filter_map(|n| Some((n, self.kept_state(n, kept)?)))
-            .last();
+            .fold(None, |_, found| Some(found));
         let oldest = milestone
             .as_ref()
             .map_or(0, |(n, _)| *n)
