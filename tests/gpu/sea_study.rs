@@ -35,7 +35,9 @@ fn light_under_a_small_sea() {
         let mean = p.sun.mean;
         let off = (mean.value - 1.0).abs();
         assert!(off < 0.1 + 4.0 * mean.error.unwrap(), "{mean:?}");
-        assert!(p.water_cells <= 96 && p.undersampled == (p.place.depth_m > 1.0));
+        assert!(p.water_cells <= 96);
+        // 96 cells are few for the window of a deep floor, and it is said.
+        assert!(p.undersampled || p.place.depth_m < 1.0, "{p:?}");
         assert!(p.sun.cv.value > 0.1 && p.sun.cv.value < 2.0);
         // Blurring takes from the fluctuation.
         assert!(p.sun.cv.value <= p.point_sun.cv.value);

@@ -68,19 +68,29 @@ pub fn numbers(flag: &str, text: &str, [least, most]: [f64; 2]) -> Result<Vec<f6
     }
 }
 
+impl SeaArgs {
+    /// What is measured.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] for an invalid list.
+    pub fn settings(&self) -> Result<Settings, CliError> {
+        Ok(Settings {
+            depths_m: numbers("--depths", &self.depths, [0.1, 100.0])?,
+            winds_m_s: numbers("--winds", &self.winds, [1.0, 20.0])?,
+            moments: self.moments,
+            seconds: self.seconds,
+            texels: self.texels,
+            water_cells: self.water_cells,
+        })
+    }
+}
+
 /// Runs the study and writes the results.
 ///
 /// # Errors
 /// An invalid list, a GPU that fails, a folder that cannot be written.
 pub fn run(args: &SeaArgs, config: &RenderConfig) -> Result<(), CliError> {
-    let settings = Settings {
-        depths_m: numbers("--depths", &args.depths, [0.1, 100.0])?,
-        winds_m_s: numbers("--winds", &args.winds, [1.0, 20.0])?,
-        moments: args.moments,
-        seconds: args.seconds,
-        texels: args.texels,
-        water_cells: args.water_cells,
-    };
+    let settings = args.settings()?;
     std::fs::create_dir_all(&args.output).map_err(|e| CliError::write(&args.output, e))?;
     let mut renderer = Renderer::new(config)?;
     renderer.time_by_host(false);

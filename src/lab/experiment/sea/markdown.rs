@@ -9,7 +9,7 @@ use super::published::{
 use super::scene::{
     LONG_TILE_M, SHORT_TILE_M, SHORTEST_M, SPLIT_M, SUN_ELEVATION_DEG, WIND_DIRECTION_DEG,
 };
-use super::study::{Check, Checks, Estimate, FlashFigures, PlaceResult, SeaStudy};
+use super::study::{Check, Checks, Estimate, FlashFigures, PlaceResult, SeaStudy, SlopeResult};
 use super::write::{CV, FLASHES, PEAKS};
 use crate::lab::study::words::{percent, significant};
 
@@ -185,13 +185,12 @@ fn variation_in_words(s: &SeaStudy) -> Option<String> {
     let shallow = mean(s.places.iter().filter(|p| p.place.depth_m <= 2.0), cv)?;
     let deep = mean(s.places.iter().filter(|p| p.place.depth_m == 25.0), cv)?;
     let ratio = shallow / deep;
-    let verdict = if ratio > 1.5 * CV_RATIO {
-        "More than measured: here the shallow places have no sky light to soften them, and at depth long waves are missing."
-    } else if ratio < CV_RATIO / 1.5 {
-        "Less than measured: here nothing is scattered, which at sea evens out the light at depth first, and detectors near the surface \
-        are too large for the finest focusing."
+    let verdict = if ratio > 1.3 * CV_RATIO {
+        "More than measured: long waves, which focus at depth, are missing here."
+    } else if ratio < CV_RATIO / 1.3 {
+        "Less than measured: scattering, which is left out here, evens out the light at sea, and the more the deeper."
     } else {
-        "That agrees within the spread of winds."
+        "About the same."
     };
     Some(format!(
         "**Variation.** The mean over winds at 2 m and above is {} times that at 25 m; measured: {CV_RATIO}. {verdict}",
@@ -200,31 +199,23 @@ fn variation_in_words(s: &SeaStudy) -> Option<String> {
 }
 
 fn peaks_in_words(s: &SeaStudy) -> Option<String> {
-    let near = |p: &&PlaceResult| (0.5..=2.0).contains(&p.place.depth_m);
-    let highest = |p: &&PlaceResult| p.sun.highest;
-    let strongest = s
-        .places
-        .iter()
-        .filter(near)
-        .max_by(|a, b| highest(a).total_cmp(&highest(b)))?;
-    let by_peak = s.places.iter().filter(near).max_by(|a, b| {
-        let peak = |p: &PlaceResult| p.sun.peak.value;
-        peak(a).total_cmp(&peak(b))
-    })?;
+    let at_1_m = || s.places.iter().filter(|p| p.place.depth_m == 1.0);
+    let largest = |of: fn(&PlaceResult) -> f64| at_1_m().max_by(|a, b| of(a).total_cmp(&of(b)));
+    let highest = largest(|p| p.sun.highest)?.sun.highest;
+    let of_point = largest(|p| p.point_sun.highest)?.point_sun.highest;
+    let wind_m_s = largest(|p| p.sun.peak.value)?.place.wind_m_s;
     let [low, high] = PEAK_WINDS_M_S;
-    let wind = by_peak.place.wind_m_s;
-    let verdict = if (low..=high).contains(&wind) {
-        "as at sea"
+    let verdict = if (low..=high).contains(&wind_m_s) {
+        "as others have it"
     } else {
-        "unlike at sea, where breaking, foam and waves of all lengths even out the light under stronger winds and slicks calm the sea \
-        under weaker ones"
+        "others have it otherwise"
     };
     Some(format!(
-        "**Peaks.** Between 0.5 and 2 m the highest of all values is {} times the mean ({} for a point sun); others: up to {PEAK_AT_1_M} at \
-        1 m. The peaks that one value in a thousand exceeds are highest under {wind} m/s there; at sea the most intense peaks come with \
-        {low} … {high} m/s: {verdict}.",
-        significant(strongest.sun.highest, 3),
-        significant(strongest.point_sun.highest, 3),
+        "**Peaks.** At 1 m the highest of all values is {} times the mean ({} for a point sun); others: up to {PEAK_AT_1_M}. The peaks that \
+        one value in a thousand exceeds are highest under {wind_m_s} m/s there; the most intense peaks of others come with {low} … {high} \
+        m/s: {verdict}.",
+        significant(highest, 3),
+        significant(of_point, 3),
     ))
 }
 
@@ -242,16 +233,17 @@ fn flashes_in_words(s: &SeaStudy) -> Option<String> {
     let rate = if (least..=most).contains(&FLASHES_PER_MINUTE) {
         "The published number lies in this range"
     } else if least > FLASHES_PER_MINUTE {
-        "Ours are more, because no even light of sky and scattering raises the mean that they have to exceed"
+        "Ours are more: even light of the sky and scattered light, which would raise the mean that they have to exceed, are left out"
     } else {
         "Ours are fewer"
     };
-    let length = if shortest > long {
-        "ours last longer: waves shorter than the cut would pass faster over a detector, and the tank of the laboratory had short waves only"
-    } else if longest < short {
+    let length = if longest > long {
+        "ours last longer, most of all in deep water and weak wind: waves shorter than the cut, which are left out, would make \
+        finer and faster flashes"
+    } else if shortest < short {
         "ours are shorter"
     } else {
-        "the lengths overlap"
+        "the lengths agree"
     };
     Some(format!(
         "**Flashes.** Down to {FLASH_DEPTH_M} m there are {} … {} a minute, {} … {} ms long; published: {FLASHES_PER_MINUTE}, {short} … {long} ms. {rate}; \
@@ -284,6 +276,10 @@ fn account(text: &mut String, s: &SeaStudy) {
             significant(slope.mean_square, 3),
             significant(cox_munk(slope.wind_m_s), 3)
         );
+    }
+    let is_steeper = |slope: &SlopeResult| slope.mean_square > cox_munk(slope.wind_m_s) + 0.004;
+    if s.slopes.iter().any(is_steeper) {
+        text.push_str("\nWhere ours exceed theirs, the spectrum is steeper than their fit.\n");
     }
 }
 

@@ -46,6 +46,19 @@ pub struct Settings {
     pub water_cells: u32,
 }
 
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            depths_m: vec![0.5, 1.0, 2.0, 5.0, 10.0, 25.0],
+            winds_m_s: vec![2.0, 5.0, 7.0, 10.0, 15.0],
+            moments: 8,
+            seconds: 0.12,
+            texels: 128,
+            water_cells: 1024,
+        }
+    }
+}
+
 /// Why there is no study.
 #[derive(Debug, thiserror::Error)]
 pub enum SeaError {
