@@ -86,7 +86,7 @@ pub fn id(bytes: &[u8]) -> String {
 /// # Errors
 /// Files of other formats, damaged ones, and those that claim more than they have.
 pub fn read(bytes: &[u8]) -> Result<Field, FieldError> {
-    let (format, read): (_, fn(&[u8]) -> Result<Read, FieldError>) = match bytes {
+    let (format, read): (_, Reader) = match bytes {
         [] => return Err(FieldError::Empty),
         _ if bytes.starts_with(npy::MAGIC) => (FieldFormat::Npy, npy::read),
         _ if bytes.starts_with(exr::MAGIC) => (FieldFormat::Exr, exr::read),
@@ -107,6 +107,9 @@ pub fn read(bytes: &[u8]) -> Result<Field, FieldError> {
             .collect(),
     })
 }
+
+/// Reads a file of one format.
+type Reader = fn(&[u8]) -> Result<Read, FieldError>;
 
 /// What a format's reader finds.
 struct Read {

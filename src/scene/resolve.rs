@@ -78,6 +78,10 @@ impl ResolvedScene {
 ///
 /// All findings of [`Scene::validate`], every unknown mesh, and what is wrong with the files of height fields together.
 /// [`SceneError::kind`] is [`IssueKind::UnknownMesh`] or [`IssueKind::UnknownAsset`] only if nothing else is wrong.
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "callers hand over references and closures alike"
+)]
 pub fn resolve(
     scene: Scene,
     limits: &Limits,

@@ -111,8 +111,8 @@ pub(super) fn integrate_bounded(
     let mut rises_x = vec![0.0; width * height];
     let lines = rises_x.chunks_exact_mut(width);
     for (rises, slopes) in lines.zip(along_x.chunks_exact(width)) {
-        for i in 0..width - 1 {
-            rises[i] = rise(width, i, |at| slopes[at]);
+        for (i, to_next) in rises[..width - 1].iter_mut().enumerate() {
+            *to_next = rise(width, i, |at| slopes[at]);
         }
     }
     let mut rises_z = vec![0.0; width * height];

@@ -67,6 +67,10 @@ impl Spline {
 
     /// The spline through `heights_m`, around which the water is flat: beyond the samples it swings out, a quarter as high per
     /// sample, and ends 18 samples from them.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "the same arguments as `through`"
+    )]
     pub(super) fn in_flat_water(
         heights_m: Vec<f64>,
         size: [usize; 2],
