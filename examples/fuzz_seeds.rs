@@ -1,4 +1,5 @@
-//! Writes the seeds of fuzzing: the project's scenes, the scenes of the hard cases, one scene per method, meshes, and files of numbers. `make fuzz` runs it.
+//! Writes the seeds of fuzzing: the project's scenes, the scenes of the hard cases, one scene per method, meshes, and files of numbers.
+//! `make fuzz` runs it.
 //!
 //! Usage: `fuzz_seeds FOLDER`; files go to `FOLDER/scene`, `FOLDER/obj` and `FOLDER/field`.
 

@@ -193,9 +193,9 @@ pub struct ServeConfig {
     /// have a request, the new one waits. The limit of open files may lower this number; the log says so.
     #[arg(long, env = "CAUSTICA_MAX_CONNECTIONS", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..))]
     pub max_connections: u32,
-    /// Seconds after which a connection without a request is closed, and one whose client does not read its answer. The header of
-    /// a request has to be complete within this time, and within 30 seconds. Longer than the 60 seconds of common load balancers, so that they
-    /// never send a request on a connection that is just being closed.
+    /// Seconds after which a connection without a request is closed, and one whose client does not read its answer. The header of a request
+    /// has to be complete within this time, and within 30 seconds. Longer than the 60 seconds of common load balancers, so that they never
+    /// send a request on a connection that is just being closed.
     #[arg(long, env = "CAUSTICA_IDLE_TIMEOUT_S", default_value_t = 75, value_parser = clap::value_parser!(u64).range(1..=86_400))]
     pub idle_timeout_s: u64,
     /// Origin whose web pages may use the service (CORS), as `http://localhost:3000`, or `*` for all. Repeat it, or separate several

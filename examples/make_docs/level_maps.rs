@@ -5,7 +5,7 @@ use std::error::Error;
 use std::path::Path;
 
 use caustica::config::RenderConfig;
-use caustica::lab::experiment::{self, Experiment, FEATURED, Settings};
+use caustica::lab::experiment::level_map::{self as experiment, Experiment, FEATURED, Settings};
 use caustica::lab::shapes;
 use caustica::reference::{TruthSettings, truth};
 use caustica::render::Renderer;

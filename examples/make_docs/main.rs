@@ -1,6 +1,7 @@
 //! Writes `docs/accuracy.md` (the effect of each dial on the example scenes, measured by the program itself), `docs/level-maps.md`
-//! (the thesis's experiments with our measurements), `docs/hard-cases.md` and `docs/waves.md` (each kind of water). The arguments
-//! `accuracy`, `level_maps`, `hard_cases` and `waves` write only that page; names of scenes print the page's text about them.
+//! (the thesis's experiments with our measurements), `docs/sea.md` (sunlight under the sea), `docs/hard-cases.md` and `docs/waves.md`
+//! (each kind of water). The arguments `accuracy`, `level_maps`, `sea`, `hard_cases` and `waves` write only that page; names of scenes
+//! print the page's text about them.
 //!
 //! `make docs` runs it. Truths are kept in `out/truth`, so a second run only renders. Times are of the machine that it runs on, which
 //! the page names.
@@ -11,6 +12,7 @@ mod level_maps;
 mod page;
 mod residual;
 mod scenes;
+mod sea;
 mod targets;
 mod waves;
 
@@ -37,6 +39,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     if only.is_empty() || only.iter().any(|name| name == level_maps::NAME) {
         eprintln!("{} …", level_maps::NAME);
         level_maps::write()?;
+    }
+    if only.is_empty() || only.iter().any(|name| name == sea::NAME) {
+        eprintln!("{} …", sea::NAME);
+        sea::write()?;
     }
     if only.is_empty() || only.iter().any(|name| name == hard_cases::NAME) {
         eprintln!("{} …", hard_cases::NAME);

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use caustica::accuracy::LinearImage;
-use caustica::lab::experiment::{Technique, scene};
+use caustica::lab::experiment::level_map::{Technique, scene};
 use caustica::lab::study::error_images::error_images;
 use caustica::lab::study::study::{
     CostFigures, ErrorFigures, Point, SpreadMs, Study, StudyImages, Sweep, TruthFigures,

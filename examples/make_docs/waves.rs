@@ -5,10 +5,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
-use caustica::config::{Limits, RenderConfig};
+use caustica::config::RenderConfig;
 use caustica::kept::Kept;
-use caustica::mesh::Mesh;
-use caustica::methods;
 use caustica::reference::{ReferenceSettings, irradiance_map};
 use caustica::render::Renderer;
 use caustica::scene::{LayerName, ResolvedScene, Scene};
@@ -91,6 +89,15 @@ const KINDS: &[Kind] = &[
         },
     },
     Kind {
+        name: "spectrum: choppy",
+        about: "The JONSWAP sea with a choppiness of 1: surface points move to the sides too, and crests become sharp.",
+        waves: || {
+            Ok(Water::Json(sea(
+                &json!({ "model": "jonswap", "choppiness": 1.0 }),
+            )))
+        },
+    },
+    Kind {
         name: "ripples",
         about: "Drops in a basin, whose walls reflect the rings.",
         waves: || {
@@ -102,6 +109,29 @@ const KINDS: &[Kind] = &[
                 ]
             }])))
         },
+    },
+    Kind {
+        name: "ripples: absorbing",
+        about: "The same drops in open water: the walls absorb.",
+        waves: || {
+            Ok(Water::Json(json!([{
+                "kind": "ripples", "min_m": [-1.5, -1.5], "max_m": [1.5, 1.5], "samples": 256, "walls": "absorbing",
+                "drops": [
+                    { "position_m": [-0.5, 0.3], "radius_m": 0.08, "height_m": 0.04, "at_s": -0.7 },
+                    { "position_m": [0.7, -0.6], "radius_m": 0.08, "height_m": 0.04, "at_s": -0.4 }
+                ]
+            }])))
+        },
+    },
+    Kind {
+        name: "ripples: obstacle",
+        about: "Shallow water with a post in it, which reflects the rings (`scenes/rain_pool_post.json`). It moves in steps of time.",
+        waves: || Ok(Water::Scene(Box::new(scenes::load("rain_pool_post")?))),
+    },
+    Kind {
+        name: "height_field",
+        about: "Heights that a user computed elsewhere, read from a file (`scenes/own_water.json`).",
+        waves: || Ok(Water::Scene(Box::new(scenes::load("own_water")?))),
     },
 ];
 
@@ -117,26 +147,32 @@ fn sea(fields: &Value) -> Value {
     json!([waves])
 }
 
-/// The scene of a panel at `time_s`.
+/// The scene of a panel, `time_s` after the first. Scenes from files keep their water, floor depth and objects.
 fn scene(water: &Water, time_s: f64) -> Result<ResolvedScene, Box<dyn Error>> {
-    let mut value = json!({
-        "floor": { "depth_m": 2, "size_m": [60, 60] },
-        "lights": [{ "kind": "sun", "elevation_deg": 70, "azimuth_deg": 30, "irradiance_w_m2": [1, 1, 1] }],
-        "quality": { "water_cells": 256 },
-        "output": { "kind": "irradiance_map", "receiver": "floor", "min_m": [-HALF_M, -HALF_M], "max_m": [HALF_M, HALF_M],
-                    "width": SIDE, "height": SIDE },
-        "time_s": time_s
-    });
-    let waves = match water {
-        Water::Json(waves) => waves.clone(),
-        Water::Scene(resolved) => serde_json::to_value(&resolved.scene.water.waves)?,
+    let mut value = match water {
+        Water::Json(waves) => {
+            json!({ "water": { "waves": waves }, "floor": { "depth_m": 2 }, "time_s": 0 })
+        }
+        Water::Scene(resolved) => serde_json::to_value(&resolved.scene)?,
     };
-    value["water"] = json!({ "waves": waves });
+    let start_s = value["time_s"].as_f64().unwrap_or_default();
+    value["time_s"] = json!(start_s + time_s);
+    value["water"]["absorption_per_m"] = json!([0, 0, 0]);
+    value["floor"]["size_m"] = json!([60, 60]);
+    value["lights"] = json!([
+        { "kind": "sun", "elevation_deg": 70, "azimuth_deg": 30, "irradiance_w_m2": [1, 1, 1] }
+    ]);
+    value["quality"] = json!({ "water_cells": 256 });
+    value["output"] = json!({
+        "kind": "irradiance_map", "receiver": "floor", "min_m": [-HALF_M, -HALF_M], "max_m": [HALF_M, HALF_M],
+        "width": SIDE, "height": SIDE
+    });
+    if let Some(fields) = value.as_object_mut() {
+        fields.remove("camera");
+    }
     let scene = Scene::from_value(value)?;
     Ok(match water {
-        Water::Json(_) => methods::resolve(scene, &Limits::default(), |_: &str| {
-            None::<std::sync::Arc<Mesh>>
-        })?,
+        Water::Json(_) => ResolvedScene::bare(scene),
         Water::Scene(resolved) => ResolvedScene {
             scene,
             ..resolved.as_ref().clone()
@@ -182,7 +218,7 @@ pub(crate) fn write() -> Result<(), Box<dyn Error>> {
     let page = format!(
         "# Water\n\n\
          Each row of pictures shows a square of {:.0} m × {:.0} m: the height of the water (black −, white +), the magnitude of its slope \
-         (white is the largest), and the irradiance of the floor 2 m below under a sun of 70° (white is three times the mean). Written by `make docs`.\n\n\
+         (white is the largest), and the irradiance of a floor 2 m below under a sun of 70°, without absorption (white is three times the mean). Written by `make docs`.\n\n\
          Times are medians of {MOMENTS} moments on {} with {} CPU cores: `surface` is what one more moment of the water costs on the CPU, \
          `frame` the whole frame with a map of {SIDE} × {SIDE} texels and 256 × 256 water cells, `surface` included. The error is the \
          relative L1 error of this map against the float64 reference.\n\n\

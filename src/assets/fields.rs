@@ -6,8 +6,8 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use crate::config::Limits;
 use crate::fields::{self, Field, FieldError, FieldInfo};
 
-/// Files by content id, shared between threads, within a budget of bytes. Nothing is evicted: a file stays until it is removed, and one that does
-/// not fit is refused.
+/// Files by content id, shared between threads, within a budget of bytes. Nothing is evicted: a file stays until it is removed, and one
+/// that does not fit is refused.
 #[derive(Debug)]
 pub struct FieldStore {
     budget_bytes: u64,

@@ -1,4 +1,6 @@
-//! `caustica experiment`: repeats published experiments.
+//! `caustica experiment`: repeats published experiments. `sea` has a file of its own.
+
+pub mod sea;
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -11,7 +13,7 @@ use super::error::CliError;
 use super::notes::say;
 use super::progress::bar;
 use crate::config::RenderConfig;
-use crate::lab::experiment::{self, ExperimentError, Settings};
+use crate::lab::experiment::level_map::{self, ExperimentError, Settings};
 use crate::lab::shapes;
 use crate::reference::{TruthSettings, truth};
 use crate::render::Renderer;
@@ -32,6 +34,8 @@ pub struct ExperimentArgs {
 pub enum Which {
     /// Compares level maps with slice images, smart with uniform slicing, and both with exact ray hits (Tipprasert 2006, ch. 5).
     LevelMap(LevelMapArgs),
+    /// Measures how sunlight on a floor under the sea fluctuates with depth and wind, beside what was measured at sea.
+    Sea(sea::SeaArgs),
 }
 
 /// What to measure, and where to write it.
@@ -116,7 +120,13 @@ pub fn meshes(text: &str) -> Result<Vec<String>, CliError> {
 /// # Errors
 /// An invalid name or list, a GPU that fails, a folder that cannot be written.
 pub fn run(args: &ExperimentArgs, config: &RenderConfig) -> Result<(), CliError> {
-    let Which::LevelMap(args) = &args.which;
+    match &args.which {
+        Which::LevelMap(args) => run_level_map(args, config),
+        Which::Sea(args) => sea::run(args, config),
+    }
+}
+
+fn run_level_map(args: &LevelMapArgs, config: &RenderConfig) -> Result<(), CliError> {
     let settings = Settings {
         meshes: meshes(&args.meshes)?,
         planes: planes(&args.planes)?,
@@ -134,7 +144,7 @@ pub fn run(args: &ExperimentArgs, config: &RenderConfig) -> Result<(), CliError>
         disk: config.truth_cache.clone().or_else(cache_folder),
         ..TruthSettings::default()
     };
-    let found = experiment::measure(
+    let found = level_map::measure(
         &settings,
         &mut |scene| Ok(renderer.borrow_mut().render(scene, &never)?),
         &mut |scene| {
@@ -149,7 +159,7 @@ pub fn run(args: &ExperimentArgs, config: &RenderConfig) -> Result<(), CliError>
     )
     .map_err(failed)?;
     progress.finish_and_clear();
-    for file in experiment::write(&args.output, &found).map_err(failed)? {
+    for file in level_map::write(&args.output, &found).map_err(failed)? {
         say(file.display().to_string());
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! Arrays of numbers in files that users bring: NPY, EXR and 16-bit PNG.
 //!
-//! Nothing is known here of what the numbers mean. A file has frames of one size, and channels of the same frames.
+//! Nothing is known here of what the numbers mean (these are not the fields of light of the glossary). A file has frames of one size, and
+//! channels of the same frames.
 //!
 //! NPY is read by our own code: the library for it allocates what a header claims before it looks at the file, and reads
 //! nested brackets by recursion.

@@ -54,15 +54,18 @@ impl FieldFrames {
     /// The mean of all samples of all frames: of heights, m.
     pub fn mean(&self) -> f64 {
         let [columns, rows] = self.file_size();
-        let sums = self.files.iter().map(|file| {
-            let channel = file.channel(0);
+        // A file may be used several times.
+        let starts = self.frames.iter().filter(|[_, frame]| *frame == 0);
+        let sums = starts.map(|[file, _]| {
+            let file = &self.files[*file];
             let count = (columns * rows * file.field.frames) as f64;
-            channel.sum * file.scale + file.offset * count
+            file.channel(0).sum * file.scale + file.offset * count
         });
         sums.sum::<f64>() / (columns * rows * self.count()) as f64
     }
 
-    /// Height (m) or slope at a place in a frame: the first channel is that of heights or of slopes along x, the second that of slopes along z.
+    /// Height (m) or slope at a place in a frame: the first channel is that of heights or of slopes along x, the second that of slopes
+    /// along z.
     pub fn value(&self, frame: usize, channel: usize, row: usize, column: usize) -> f64 {
         let [file, frame] = self.frames[frame];
         let file = &self.files[file];

@@ -105,7 +105,7 @@ pub const MAX_GRID_SAMPLES: u64 = 1 << 24;
 /// Most standing waves of all drops of a scene: a few seconds.
 pub const MAX_SWINGS: u64 = 1 << 28;
 /// Most samples × steps of all basins with obstacles of a scene, from their first drops to the time of the frame: some ten seconds.
-pub const MAX_SAMPLE_STEPS: f64 = 8e9;
+pub const MAX_SAMPLE_STEPS: f64 = 4e9;
 /// Most drops of one basin.
 pub const MAX_DROPS: usize = 256;
 /// `floor.depth_m`.

@@ -76,8 +76,8 @@ impl ResolvedScene {
 ///
 /// # Errors
 ///
-/// All findings of [`Scene::validate`], every unknown mesh, and what is wrong with the files of height fields together. [`SceneError::kind`] is
-/// [`IssueKind::UnknownMesh`] or [`IssueKind::UnknownAsset`] only if nothing else is wrong.
+/// All findings of [`Scene::validate`], every unknown mesh, and what is wrong with the files of height fields together.
+/// [`SceneError::kind`] is [`IssueKind::UnknownMesh`] or [`IssueKind::UnknownAsset`] only if nothing else is wrong.
 pub fn resolve(
     scene: Scene,
     limits: &Limits,

@@ -287,6 +287,9 @@ pub struct Ripples {
     /// no water flows between samples that the cut separates, so that walls thinner than a sample reflect too. If the cut is open, nothing
     /// is inside of it. The slope across the obstacle's rim is 0. Inside, hidden by the object, the surface is continued smoothly. Across
     /// a wall thinner than about four samples it is steep.
+    ///
+    /// Samples × steps from the first drop to `time_s` are at most 4·10⁹ for all such basins together. The states are kept, so that a later
+    /// frame goes on from an earlier one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub obstacles: Vec<u32>,
 }
@@ -325,7 +328,7 @@ pub enum Walls {
     /// What leaves at a side enters at the opposite one.
     Periodic,
     /// What reaches a side leaves: the basin is a part of wider water. Without obstacles nothing comes back; of a wave number's waves that
-    /// have run four times as far as the basin's farthest corner, nothing is left. With obstacles less than 0.1 % of the energy comes back.
+    /// have run four times as far as the basin's farthest corner, nothing is left. With obstacles less than 1 % of the energy comes back.
     Absorbing,
 }
 

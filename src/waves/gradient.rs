@@ -99,8 +99,8 @@ fn wave_number(index: usize, count: usize, step_m: f64) -> f64 {
     turns * TAU / (count as f64 * step_m)
 }
 
-/// Slopes ∂h/∂x and ∂h/∂z within edges. Slopes become rises, the mean slopes from sample to sample; the heights are those whose rises differ least from these, found
-/// among the waves of the field with its mirror images.
+/// Slopes ∂h/∂x and ∂h/∂z within edges. Slopes become rises, the mean slopes from sample to sample; the heights are those whose rises
+/// differ least from these, found among the waves of the field with its mirror images.
 pub(super) fn integrate_bounded(
     slopes: [Vec<f64>; 2],
     size: [usize; 2],

@@ -261,8 +261,8 @@ fn blend(heights_m: &mut [f64], [width, height]: [usize; 2], step_m: DVec2, rim_
     changed_m
 }
 
-/// Length of the shortest wave that counts, m; infinite if the water is flat. All but [`UNNOTICED_SLOPE`] of the mean square slope along x is in waves
-/// of at most some wave number along x; likewise along z.
+/// Length of the shortest wave that counts, m; infinite if the water is flat. All but [`UNNOTICED_SLOPE`] of the mean square slope along x
+/// is in waves of at most some wave number along x; likewise along z.
 fn shortest_wave_m(heights_m: &[f64], [width, height]: [usize; 2], step_m: DVec2) -> f64 {
     let columns: Vec<f64> = (0..width)
         .flat_map(|x| (0..height).map(move |z| heights_m[z * width + x]))

@@ -161,16 +161,26 @@ impl<'a> Leapfrog<'a> {
         let [flows_x, flows_z] = &mut state.flows;
         let [free_x, free_z] = &mut state.free;
         let parts_m = &state.parts_m;
-        rayon::join(
+        self.both(
             || self.move_flows(0, parts_m, flows_x, free_x),
             || self.move_flows(1, parts_m, flows_z, free_z),
         );
         let [parts_x, parts_z] = &mut state.parts_m;
         let [flows_x, flows_z] = &state.flows;
-        rayon::join(
+        self.both(
             || self.move_heights(0, parts_x, flows_x),
             || self.move_heights(1, parts_z, flows_z),
         );
+    }
+
+    /// Does both, at the same time if the grid is large enough for that to be worth its while.
+    fn both(&self, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
+        if self.cells.count() > PIECE_SAMPLES {
+            rayon::join(one, other);
+        } else {
+            one();
+            other();
+        }
     }
 
     /// Samples of the rows in a piece of work.

@@ -20,8 +20,8 @@ const GONE: f64 = 4.0;
 /// Points of Gauss's formula on a panel.
 const POINTS: usize = 16;
 
-/// Places along r per sample.
-const PLACES_PER_SAMPLE: f64 = 2.0;
+/// Places along r per length of the shortest wave.
+const PLACES_PER_WAVE: f64 = 8.0;
 
 /// Wave numbers at which the shortest wave is sought.
 const PROBES: u32 = 2048;
@@ -157,7 +157,7 @@ impl Rings {
             .fold(0.0, f64::max);
         let highest_per_m = highest_per_m(ripples);
         let nodes = nodes(ripples, scene, &fallen, reach_m, highest_per_m);
-        let place_step_m = cells.step_m[0].min(cells.step_m[1]) / PLACES_PER_SAMPLE;
+        let place_step_m = TAU / (highest_per_m * PLACES_PER_WAVE);
         // One place beyond the farthest sample.
         let places = (reach_m / place_step_m) as usize + 3;
         let drops = if nodes.is_empty() { 0 } else { fallen.len() };

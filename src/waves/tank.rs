@@ -53,7 +53,8 @@ pub(super) fn heights(
     {
         let tank = Tank::of(ripples, refinement, speed_m_per_s, footprint, &cells);
         let elapsed_s = Elapsed::between(first_s, scene.time_s).seconds();
-        heights_m = tank.heights_m(elapsed_s, kept);
+        // All steps on the threads of the pool: entering it takes as long as a step of a small basin.
+        heights_m = rayon::scope(|_| tank.heights_m(elapsed_s, kept));
         wave_m = shortest_wave_m(&tank.mounds.fallen(elapsed_s), tank.mounds.highest_per_m());
     }
     cells.fade(&mut heights_m);
@@ -205,7 +206,7 @@ impl<'a> Tank<'a> {
         let milestones = (1..=number / spacing).map(|i| i * spacing);
         let milestone = milestones
             .filter_map(|n| Some((n, self.kept_state(n, kept)?)))
-            .last();
+            .fold(None, |_, found| Some(found));
         let oldest = milestone
             .as_ref()
             .map_or(0, |(n, _)| *n)

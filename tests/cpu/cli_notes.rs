@@ -22,10 +22,14 @@ fn control_characters_do_not_reach_the_terminal() {
 
 #[test]
 fn commands_write_to_stderr_in_one_place() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli");
+    let mut paths = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli")];
     let mut files = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    while let Some(path) = paths.pop() {
+        if path.is_dir() {
+            let entries = std::fs::read_dir(path).unwrap();
+            paths.extend(entries.map(|entry| entry.unwrap().path()));
+            continue;
+        }
         let text = std::fs::read_to_string(&path).unwrap();
         // `eprint!` and `eprintln!` panic when stderr is closed, and wait when its reader stalls.
         assert!(!text.contains("eprint"), "{}", path.display());

@@ -54,7 +54,7 @@ fn field_scene(folder: &Folder, frames: &[&str]) -> std::path::PathBuf {
     let scene = serde_json::json!({
         "water": { "waves": [{ "kind": "height_field", "frames": frames, "sample_m": 0.1, "frames_per_s": 10 }] },
         "floor": { "depth_m": 1, "size_m": [2, 2] },
-        "output": { "kind": "irradiance_map" }
+        "output": { "kind": "irradiance_map", "receiver": "floor" }
     });
     folder.write("s/scene.json", &scene.to_string())
 }

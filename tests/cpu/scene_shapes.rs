@@ -118,7 +118,7 @@ const SHAPES: &[Refusal] = &[
         r#"{"water": {"waves": [{"kind": "stokes"}]}}"#,
         "/water/waves/0/kind",
         "unknown kind `stokes`",
-        "`sine`, `gerstner`, `spectrum` or `ripples`",
+        "`sine`, `gerstner`, `spectrum`, `ripples` or `height_field`",
     ),
     (
         r#"{"camera": {"kind": "fisheye"}}"#,

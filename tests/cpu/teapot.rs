@@ -87,7 +87,7 @@ pub(crate) fn volume(triangles: &[[Vec3; 3]]) -> f64 {
 #[test]
 fn the_files_are_what_the_generator_writes() {
     let all = meshes::all();
-    assert_eq!(all.len(), 5);
+    assert_eq!(all.len(), 6);
     for (name, text) in all {
         let file = std::fs::read_to_string(folder().join(name)).unwrap();
         assert!(

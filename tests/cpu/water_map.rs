@@ -149,10 +149,11 @@ fn the_warnings_of_the_water_stay() {
         let warnings = planned(&scene_files::scene(scene)).warnings;
         warnings.into_iter().map(|w| w.code).collect::<Vec<_>>()
     };
-    let sea = |samples: u32| json!([{ "kind": "spectrum", "model": "elfouhaily", "wind_speed_m_s": 6, "tile_m": 8, "min_wavelength_m": 0.26, "samples": samples }]);
+    let ripples = json!([{ "kind": "ripples", "min_m": [96, -23], "max_m": [104, -17], "samples": 64,
+                           "drops": [{ "position_m": [100, -20], "radius_m": 0.1, "height_m": 0.01 }] }]);
     let fine = json!({ "width": 2048, "height": 2048 });
-    assert_eq!(codes(sea(64), fine.clone()), ["waves_smoothed"]);
-    let flat = json!([{ "kind": "spectrum", "model": "phillips", "wind_speed_m_s": 40, "tile_m": 0.5, "samples": 64, "min_wavelength_m": 0.6 }]);
+    assert_eq!(codes(ripples, fine.clone()), ["waves_smoothed"]);
+    let flat = json!([{ "kind": "spectrum", "model": "phillips", "wind_speed_m_s": 0, "tile_m": 8, "samples": 64 }]);
     assert_eq!(codes(flat, fine), ["sea_without_waves"]);
     let sine = json!([{ "kind": "sine", "amplitude_m": 0.01, "wavelength_m": 0.5 }]);
     // Texels of 0.25 m and just above.

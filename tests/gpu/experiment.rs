@@ -1,7 +1,7 @@
 //! The thesis's experiment on a small scale, from scene to files.
 
 use caustica::config::RenderConfig;
-use caustica::lab::experiment::{self, Settings, TechniqueFigures};
+use caustica::lab::experiment::level_map::{self as experiment, Settings, TechniqueFigures};
 use caustica::reference::{TruthSettings, truth};
 
 use super::harness::{new_renderer, try_render};

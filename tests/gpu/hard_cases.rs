@@ -120,6 +120,12 @@ cases! {
         a_drop_on_a_wall,
         drops_before_at_and_after_the_moment,
         a_basin_after_a_billion_seconds,
+        a_drop_on_a_wall_that_absorbs,
+        quiet_water_behind_a_wall,
+        heights_that_jump_from_sample_to_sample,
+        heights_ten_thousand_kilometres_away,
+        heights_with_one_that_is_no_number,
+        heights_of_one_sample,
     }
     place {
         moved_by_100_km,

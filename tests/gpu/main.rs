@@ -50,6 +50,7 @@ mod points;
 mod properties;
 #[path = "../support/scene_files.rs"]
 mod scene_files;
+mod sea_study;
 mod serve_program;
 mod service;
 mod shadows;

@@ -73,7 +73,7 @@ async fn every_documented_operation_exists_and_no_other() {
             }
         }
     }
-    assert_eq!(operations, 13);
+    assert_eq!(operations, 17);
 }
 
 #[test]

@@ -14,7 +14,10 @@ use super::super::state::AppState;
 use crate::fields::FieldInfo;
 
 /// Media types that a file is read from.
-const ASSET_TYPES: &str = "application/octet-stream, application/x-npy, image/png or image/x-exr with an NPY, PNG or EXR; its first bytes say which";
+const ASSET_TYPES: &str = "application/octet-stream, application/x-npy, image/png, image/x-exr or image/exr with an NPY, PNG or EXR; its first bytes say which";
+
+/// What stands for the bytes of a file in the contract.
+const EXAMPLE: &str = "(the bytes of the file)";
 
 /// All stored assets.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -42,17 +45,18 @@ pub async fn list(State(state): State<AppState>) -> Json<AssetList> {
 
 /// Stores a file of numbers: NPY, EXR, or PNG of 16 bits.
 ///
-/// A `height_field` among `water.waves` names it by its id. The id is a hash of the uploaded bytes, so the same bytes have the same id on every
-/// installation. Assets are kept until they are deleted or the process ends.
+/// A `height_field` among `water.waves` names it by its id. The id is a hash of the uploaded bytes, so the same bytes have the same id on
+/// every installation. Assets are kept until they are deleted or the process ends.
 #[utoipa::path(
     post, path = "/v1/assets", tag = "assets",
     request_body(
         description = "The file. Its format is found from its first bytes, whatever the type says.",
         content(
-            (AssetFile = "application/octet-stream"),
-            (AssetFile = "application/x-npy"),
-            (AssetFile = "image/png"),
-            (AssetFile = "image/x-exr"),
+            (AssetFile = "application/octet-stream", example = json!(EXAMPLE)),
+            (AssetFile = "application/x-npy", example = json!(EXAMPLE)),
+            (AssetFile = "image/png", example = json!(EXAMPLE)),
+            (AssetFile = "image/x-exr", example = json!(EXAMPLE)),
+            (AssetFile = "image/exr", example = json!(EXAMPLE)),
         )
     ),
     responses(
@@ -69,8 +73,7 @@ pub async fn upload(State(state): State<AppState>, request: Request) -> Result<R
             | "application/x-npy"
             | "image/png"
             | "image/x-exr"
-            | "image/exr"
-            | "image/aces",
+            | "image/exr",
         ) => {}
         _ => return Err(unsupported(media_type, ASSET_TYPES)),
     }

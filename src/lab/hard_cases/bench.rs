@@ -1,6 +1,7 @@
 //! Rendering with the checks that hold for every picture.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use serde_json::Value;
 use tokio_util::sync::CancellationToken;
@@ -10,11 +11,12 @@ use super::case::{Case, Failure, Outcome, Verdict};
 use super::truths::Truths;
 use crate::assets::MeshStore;
 use crate::config::Limits;
+use crate::fields::{self, Field};
 use crate::frame::Frame;
 use crate::mesh::Mesh;
 use crate::methods;
 use crate::render::{RenderError, Renderer};
-use crate::scene::{LayerName, ResolvedScene, Scene, SceneError};
+use crate::scene::{Assets, Issue, LayerName, ResolvedScene, Scene, SceneError};
 use crate::stats::{Stats, Warning};
 
 /// Largest allowed closure of an energy account.
@@ -34,9 +36,72 @@ pub struct Bench<'a> {
     picture: Option<Frame>,
 }
 
-/// A scene whose `objects[i].mesh` are texts of OBJ files, with the meshes.
+/// The files that a scene has in itself.
+struct Files {
+    meshes: Vec<Arc<Mesh>>,
+    fields: Vec<Arc<Field>>,
+}
+
+impl Assets for &Files {
+    fn mesh(&self, id: &str) -> Option<Arc<Mesh>> {
+        self.meshes.iter().find(|mesh| mesh.id == id).cloned()
+    }
+
+    fn field(&self, id: &str) -> Option<Arc<Field>> {
+        self.fields.iter().find(|field| field.id == id).cloned()
+    }
+}
+
+/// An NPY file of shape (rows, columns), float64, from rows of numbers; `null` is NaN.
+fn npy_of(rows: &Value) -> Vec<u8> {
+    let rows: Vec<&Vec<Value>> = rows
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_array)
+        .collect();
+    let columns = rows.first().map_or(0, |row| row.len());
+    let header = format!(
+        "{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {columns}), }}",
+        rows.len()
+    );
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    // Length of the header, padded to a multiple of 64 with its own 10 bytes, and a line end.
+    let length = (header.len() + 1 + 10).next_multiple_of(64) - 10;
+    bytes.extend((length as u16).to_le_bytes());
+    bytes.extend(format!("{header:<width$}\n", width = length - 1).bytes());
+    let numbers = rows.into_iter().flatten();
+    bytes.extend(numbers.flat_map(|number| number.as_f64().unwrap_or(f64::NAN).to_le_bytes()));
+    bytes
+}
+
+/// The height fields of a scene whose frames are rows of numbers; they are replaced by the ids of their files.
+fn fields_in(value: &mut Value) -> Result<Vec<Arc<Field>>, Failure> {
+    let mut fields = Vec::new();
+    let waves = value
+        .pointer_mut("/water/waves")
+        .and_then(Value::as_array_mut);
+    for (wave, waves) in waves.into_iter().flatten().enumerate() {
+        let frames = waves.get_mut("frames").and_then(Value::as_array_mut);
+        for (index, frame) in frames.into_iter().flatten().enumerate() {
+            let field = fields::read(&npy_of(frame)).map_err(|error| SceneError {
+                issues: vec![Issue::invalid(
+                    format!("/water/waves/{wave}/frames/{index}"),
+                    error.to_string(),
+                    "a file of heights",
+                )],
+            })?;
+            *frame = Value::from(field.id.clone());
+            fields.push(Arc::new(field));
+        }
+    }
+    Ok(fields)
+}
+
+/// A scene with its files: `objects[i].mesh` are texts of OBJ files, and frames of height fields are rows of numbers.
 pub(super) fn resolved(store: &mut MeshStore, mut value: Value) -> Result<ResolvedScene, Failure> {
-    let mut meshes: Vec<std::sync::Arc<Mesh>> = Vec::new();
+    let fields = fields_in(&mut value)?;
+    let mut meshes: Vec<Arc<Mesh>> = Vec::new();
     let objects = value.get_mut("objects").and_then(Value::as_array_mut);
     for object in objects.into_iter().flatten() {
         let text = object["mesh"].as_str().unwrap_or_default().to_owned();
@@ -48,8 +113,8 @@ pub(super) fn resolved(store: &mut MeshStore, mut value: Value) -> Result<Resolv
         meshes.push(mesh);
     }
     let scene = Scene::from_value(value)?;
-    let find = |id: &str| meshes.iter().find(|mesh| mesh.id == id).cloned();
-    Ok(methods::resolve(scene, &Limits::default(), find)?)
+    let files = Files { meshes, fields };
+    Ok(methods::resolve(scene, &Limits::default(), &files)?)
 }
 
 impl<'a> Bench<'a> {

@@ -4,7 +4,8 @@ use serde_json::{Value, json};
 
 use super::case::Case;
 use super::case::Family::Sea;
-use super::truths::{flat_error, largest_to_mean, pool, reference_error, with, worst};
+use super::obj::cuboid;
+use super::truths::{flat_error, largest_to_mean, pool, reference_error, sun, with, worst};
 
 const REFERENCE: &str = "relative L1 against the reference";
 
@@ -141,7 +142,114 @@ pub(super) const CASES: &[Case] = &[
             Ok(worst(reference_error(b, basin(1e9, fallen(0.0)))?, apart))
         },
     ),
+    Sea.case(
+        "a_drop_on_a_wall_that_absorbs",
+        "a layer of damping that starts with a mound in it",
+        REFERENCE,
+        0.01,
+        |b| {
+            let drops = json!([{ "position_m": [1.5, 0.2], "radius_m": 0.2, "height_m": 0.04 }]);
+            let scene = with(basin(0.7, drops), &[("/water/waves/0/walls", json!("absorbing"))]);
+            reference_error(b, scene)
+        },
+    ),
+    Sea.case(
+        "quiet_water_behind_a_wall",
+        "ripples that pass through an obstacle",
+        "largest difference from flat water behind a wall across the basin, relative to the mean",
+        1e-3,
+        |b| {
+            let drops = json!([{ "position_m": [0.2, -0.7], "radius_m": 0.2, "height_m": 0.04 }]);
+            let behind = |drops: Value| {
+                let mut scene = basin(1.1, drops);
+                scene["water"]["waves"][0]["dispersion"] = json!("shallow");
+                scene["water"]["waves"][0]["obstacles"] = json!([0]);
+                with(
+                    scene,
+                    &[
+                        ("/objects", json!([{ "mesh": cuboid([4.0, 0.4, 0.2]) }])),
+                        ("/lights/0", sun(90.0, 0.0)),
+                        ("/output/min_m", json!([-1.0, 0.4])),
+                        ("/output/max_m", json!([1.0, 1.4])),
+                    ],
+                )
+            };
+            let still = b.map(behind(json!([])))?;
+            Ok(largest_to_mean(&b.map(behind(drops))?, &still))
+        },
+    ),
+    Sea.case(
+        "heights_that_jump_from_sample_to_sample",
+        "bounds of slopes that a spline exceeds between its samples",
+        REFERENCE,
+        0.02,
+        |b| reference_error(b, field(&noise(48), &json!({ "sample_m": 0.08 }))),
+    ),
+    Sea.case(
+        "heights_ten_thousand_kilometres_away",
+        "places of samples in f32",
+        "largest difference from the same heights at the origin, relative to the mean",
+        1e-5,
+        |b| {
+            let at = |x_m: f64| {
+                let scene = field(&noise(48), &json!({ "sample_m": 0.125, "min_m": [x_m - 3.0, -3.0] }));
+                with(
+                    scene,
+                    &[
+                        ("/floor/center_m", json!([x_m, 0])),
+                        ("/output/min_m", json!([x_m - 1.0, -1.0])),
+                        ("/output/max_m", json!([x_m + 1.0, 1.0])),
+                    ],
+                )
+            };
+            let here = b.map(at(0.0))?;
+            Ok(largest_to_mean(&b.map(at(1e7))?, &here))
+        },
+    ),
+    Sea.case(
+        "heights_with_one_that_is_no_number",
+        "a hole in the water, or light that is not a number",
+        "0 if the scene is refused at the frame",
+        0.0,
+        |b| {
+            let mut heights = noise(48);
+            heights[20][31] = Value::Null;
+            b.refused_at(field(&heights, &json!({ "sample_m": 0.08 })), "/water/waves/0/frames/0")
+        },
+    ),
+    Sea.case(
+        "heights_of_one_sample",
+        "a spline without a second point",
+        "0 if the scene is refused at the frame",
+        0.0,
+        |b| b.refused_at(field(&json!([[0.1]]), &json!({ "sample_m": 0.08 })), "/water/waves/0/frames/0"),
+    ),
 ];
+
+/// Heights of ±2 mm, `side` × `side`, that follow no pattern.
+fn noise(side: u64) -> Value {
+    let mut state = 1_u64;
+    let row = |_| {
+        let heights = (0..side).map(|_| {
+            // Source of the constants: Knuth, MMIX.
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 40) as f64 / (1 << 24) as f64 - 0.5) * 4e-3
+        });
+        heights.collect::<Vec<f64>>()
+    };
+    json!((0..side).map(row).collect::<Vec<_>>())
+}
+
+/// The pool under these heights, with other values for some fields.
+fn field(heights: &Value, fields: &Value) -> Value {
+    let mut waves = json!({ "kind": "height_field", "frames": [heights] });
+    for (name, value) in fields.as_object().into_iter().flatten() {
+        waves[name] = value.clone();
+    }
+    over(2.0, 1.0, json!([waves]))
+}
 
 /// A floor at `depth_m` under these waves, its map over the middle `half_m` to each side.
 fn over(depth_m: f64, half_m: f64, waves: Value) -> Value {

@@ -79,9 +79,10 @@ impl Reply {
 
     fn assert_documented(&self, kind: ProblemKind) {
         let contract = serde_json::to_value(openapi()).unwrap();
-        let route = match self.path.strip_prefix("/v1/meshes/") {
-            Some(_) => "/v1/meshes/{id}",
-            None => &self.path,
+        let route = match &*self.path {
+            path if path.starts_with("/v1/meshes/") => "/v1/meshes/{id}",
+            path if path.starts_with("/v1/assets/") => "/v1/assets/{id}",
+            path => path,
         };
         let method = self.method.as_str().to_ascii_lowercase();
         let response = &contract["paths"][route][&method]["responses"][self.status.to_string()];
