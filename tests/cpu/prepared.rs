@@ -22,6 +22,7 @@ fn differing(a: &SceneFacts, b: &SceneFacts) -> Vec<&'static str> {
             output,
             method,
             quality,
+            blends_float32,
             warnings,
         } = facts;
         [
@@ -32,6 +33,7 @@ fn differing(a: &SceneFacts, b: &SceneFacts) -> Vec<&'static str> {
             ("output", format!("{output:?}")),
             ("method", format!("{method:?}")),
             ("quality", format!("{quality:?}")),
+            ("blends_float32", format!("{blends_float32:?}")),
             ("warnings", format!("{warnings:?}")),
         ]
     };
