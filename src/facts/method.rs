@@ -32,6 +32,10 @@ pub struct MethodFacts {
     pub deposits_per_beam: u32,
     /// Whether the flux sums have room for one more map of the largest object.
     pub has_scratch_map: bool,
+    /// Whether light lands on the surfaces that a view from the light shows. Light that ends elsewhere counts as unresolved.
+    pub lands_in_view: bool,
+    /// The cells of the water that it follows light from, if they are not `quality.water_cells`.
+    pub own_cells: Option<OwnCells>,
     /// Effects that it leaves out; [`super::warnings`] has the messages.
     pub leaves_out: LeavesOut,
 }
@@ -48,9 +52,20 @@ impl MethodFacts {
             skips_empty_planes: false,
             deposits_per_beam: 1,
             has_scratch_map: false,
+            lands_in_view: false,
+            own_cells: None,
             leaves_out: LeavesOut::default(),
         }
     }
+}
+
+/// The cells of the water that a method follows light from, by a dial of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OwnCells {
+    /// Cells along each side of the window.
+    pub cells: u32,
+    /// Name of the dial.
+    pub dial: &'static str,
 }
 
 /// Effects that a method leaves out and others simulate.

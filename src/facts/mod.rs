@@ -54,6 +54,8 @@ pub struct SceneFacts {
     pub method: MethodFacts,
     /// The dials, reduced to what the output uses.
     pub quality: Quality,
+    /// Whether the adapter can blend into textures of 32-bit floats. True until a renderer knows better.
+    pub blends_float32: bool,
     /// Warnings about what is not simulated.
     pub warnings: Vec<Warning>,
 }
@@ -81,6 +83,7 @@ impl SceneFacts {
             output,
             method,
             quality,
+            blends_float32: true,
             warnings: Vec::new(),
         };
         facts.size_floor_map(&scene.output);

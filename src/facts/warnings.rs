@@ -274,13 +274,19 @@ fn left_out_by_method(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning>
 impl SceneFacts {
     /// Whether the cells of a light's grid are too large for the shortest wave.
     pub fn is_undersampled(&self, light: &BeamSet) -> bool {
-        cells_needed(self, light) > f64::from(self.quality.water_cells)
+        cells_needed(self, light) > f64::from(self.cells())
+    }
+
+    /// Cells along each side of the water that the method follows light from.
+    fn cells(&self) -> u32 {
+        let own = self.method.own_cells.map(|own| own.cells);
+        own.unwrap_or(self.quality.water_cells)
     }
 }
 
 /// Cells along a side of a light's grid that the shortest wave needs.
 fn cells_needed(facts: &SceneFacts, light: &BeamSet) -> f64 {
-    let widest_m = light.span_m(facts.quality.water_cells);
+    let widest_m = light.span_m(facts.cells());
     (widest_m * CELLS_PER_WAVE / facts.water.surface.shortest_wave_m()).ceil()
 }
 
@@ -292,7 +298,12 @@ fn coarse_cells(facts: &SceneFacts) -> Option<Warning> {
         .iter()
         .filter(|light| facts.is_undersampled(light))
         .max_by(|a, b| cells_needed(facts, a).total_cmp(&cells_needed(facts, b)))?;
-    let cells = facts.quality.water_cells;
+    let cells = facts.cells();
+    let own_dial = facts.method.own_cells.map(|own| own.dial);
+    let at = match own_dial {
+        Some(dial) => format!("/quality/method/{dial}"),
+        None => "/quality/water_cells".to_owned(),
+    };
     Some(warning(
         WAVES_UNDERSAMPLED,
         format!(
@@ -301,7 +312,7 @@ fn coarse_cells(facts: &SceneFacts) -> Option<Warning> {
             facts.water.surface.shortest_wave_m(),
             cells_needed(facts, light)
         ),
-        "/quality/water_cells",
+        at,
     ))
 }
 

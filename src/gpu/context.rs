@@ -30,6 +30,8 @@ pub struct GpuContext {
     pub limits: wgpu::Limits,
     /// Whether pass timestamps can be taken.
     pub timestamps: bool,
+    /// Whether draws can blend into textures of 32-bit floats.
+    pub blends_float32: bool,
     /// Largest staging buffer since [`Self::take_readback_peak`], bytes.
     pub(super) readback_peak: AtomicU64,
     adapter: AdapterStats,
@@ -45,16 +47,14 @@ impl GpuContext {
         let adapters = block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
         let adapter = choose(adapters, policy)?;
         let info = adapter.get_info();
-        let timestamps = adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        // Whatever of these it has.
+        let features = adapter.features()
+            & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::FLOAT32_BLENDABLE);
         let software = info.device_type == wgpu::DeviceType::Cpu;
         let limits = wanted_limits(&adapter.limits(), software);
         let (device, queue) = block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("caustica"),
-            required_features: if timestamps {
-                wgpu::Features::TIMESTAMP_QUERY
-            } else {
-                wgpu::Features::empty()
-            },
+            required_features: features,
             required_limits: limits.clone(),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..Default::default()
@@ -75,7 +75,8 @@ impl GpuContext {
             device,
             queue,
             limits,
-            timestamps,
+            timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
+            blends_float32: features.contains(wgpu::Features::FLOAT32_BLENDABLE),
             readback_peak: AtomicU64::new(0),
             adapter,
             errors,

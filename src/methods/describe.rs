@@ -49,10 +49,16 @@ fn object_schema(method: &Method) -> ObjectBuilder {
         .schema_type(Type::Object)
         .title(Some(method.name))
         .description(Some(format!(
-            "{}. Source: {}. Of the other fields of `quality` these trade its accuracy for time: {}.",
+            "{}. Source: {}. {}.",
             capitalised(method.summary),
             method.paper,
-            method.shared_dials.join(", ")
+            match method.shared_dials {
+                [] => "No other field of `quality` trades its accuracy for time".to_owned(),
+                shared => format!(
+                    "Of the other fields of `quality` these trade its accuracy for time: {}",
+                    shared.join(", ")
+                ),
+            }
         )))
         .property(KIND, kind)
         .additional_properties(Some(AdditionalProperties::FreeForm(false)));

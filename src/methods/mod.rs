@@ -10,6 +10,7 @@
 mod check;
 mod describe;
 pub mod level_map;
+pub mod photon;
 pub mod planes;
 pub mod reference_planes;
 pub mod volumetric;
@@ -32,7 +33,7 @@ macro_rules! list {
     };
 }
 
-list![level_map, planes, volumetric];
+list![level_map, planes, volumetric, photon];
 
 /// A method.
 pub struct Method {

@@ -44,7 +44,7 @@ pub(super) fn energy(facts: &SceneFacts, raw: &[u64]) -> (Vec<EnergyAccount>, Ve
     for mut sums in of_lights.into_iter().flatten() {
         sums.account.closure = closure(&sums.account);
         warnings.extend(not_conserved(facts, &sums.account));
-        warnings.extend(unresolved(&sums));
+        warnings.extend(unresolved(facts, &sums));
         warnings.extend(not_followed(&sums));
         accounts.push(sums.account);
     }
@@ -257,12 +257,23 @@ fn not_conserved(facts: &SceneFacts, account: &EnergyAccount) -> Option<Warning>
     })
 }
 
-/// The warning about unresolved pieces.
-fn unresolved(sums: &LightSums) -> Option<Warning> {
+/// The warning about unresolved pieces, or about photons that end out of the light's view.
+fn unresolved(facts: &SceneFacts, sums: &LightSums) -> Option<Warning> {
     if sums.unresolved == 0 {
         return None;
     }
     let light = sums.account.light;
+    if facts.method.lands_in_view {
+        let message = format!(
+            "{} rays of light {light} with {:.3} % of its flux end where the view from the light shows no surface: they are hidden from it, or the search did not find their end; their light falls on the surface shown there",
+            sums.unresolved,
+            sums.percent(term::UNRESOLVED),
+        );
+        return Some(Warning {
+            flux_w: Some(sums.grey_w[term::UNRESOLVED]),
+            ..Warning::new("rays_end_out_of_view", message)
+        });
+    }
     let mut message = format!(
         "{} pieces of beams of light {light} with {:.3} % of its flux still straddle receivers after quality.split_levels halvings; the receiver at each corner gets a third of the piece",
         sums.unresolved,

@@ -12,6 +12,7 @@ mod self_check;
 mod tune;
 mod warm;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -195,8 +196,8 @@ impl Renderer {
     ) -> Result<Plan, RenderError> {
         let tuned = self.tuned(prepared, cancel)?;
         let rendered = tuned.as_ref().map_or(prepared, |tuned| &tuned.rung);
-        let facts = rendered.facts();
-        let mut plan = plan::plan(rendered.passes(), facts, Wanted::Frame, self)?.report;
+        let facts = self.facts_here(rendered.facts());
+        let mut plan = plan::plan(rendered.passes(), &facts, Wanted::Frame, self)?.report;
         plan.chosen = tuned.map(|tuned| tuned.chosen);
         Ok(plan)
     }
@@ -251,7 +252,8 @@ impl Renderer {
         self.gpu.check()?;
         let tuned = self.tuned(prepared, cancel)?;
         let rendered = tuned.as_ref().map_or(prepared, |tuned| &tuned.rung);
-        let (resolved, facts) = (rendered.resolved(), rendered.facts());
+        let resolved = rendered.resolved();
+        let facts = &*self.facts_here(rendered.facts());
         let plan = self.plan_in_budget(rendered.passes(), facts, Wanted::Frame)?;
         let plan_ms = prepared.took_ms() + ms_since(started);
         let cache_before = self.level_maps.stats();
@@ -350,6 +352,17 @@ impl Renderer {
         let facts = methods::facts(resolved)?;
         let plan = plan::plan_scene(&facts, Wanted::Points, self)?;
         Ok(self.run(resolved, &facts, &plan, cancel)?.points)
+    }
+
+    /// The facts with what only the renderer knows of the adapter.
+    fn facts_here<'a>(&self, facts: &'a SceneFacts) -> Cow<'a, SceneFacts> {
+        if !facts.blends_float32 || self.gpu.blends_float32 {
+            return Cow::Borrowed(facts);
+        }
+        Cow::Owned(SceneFacts {
+            blends_float32: false,
+            ..facts.clone()
+        })
     }
 
     /// The plan of a frame. Level maps of other scenes are dropped if they do not fit beside it, so whether a frame can be rendered does

@@ -23,6 +23,7 @@ fn differing(a: &SceneFacts, b: &SceneFacts) -> Vec<&'static str> {
             output,
             method,
             quality,
+            blends_float32,
             warnings,
         } = facts;
         [
@@ -33,6 +34,7 @@ fn differing(a: &SceneFacts, b: &SceneFacts) -> Vec<&'static str> {
             ("output", format!("{output:?}")),
             ("method", format!("{method:?}")),
             ("quality", format!("{quality:?}")),
+            ("blends_float32", format!("{blends_float32:?}")),
             ("warnings", format!("{warnings:?}")),
         ]
     };

@@ -44,6 +44,8 @@ mod level_maps_service;
 mod living_water;
 mod memory;
 mod own_passes;
+mod photon;
+mod photon_plain;
 mod planes;
 mod planted;
 mod points;
