@@ -269,13 +269,15 @@ pub struct Warning {
 impl Warning {
     /// Codes of warnings without a flux: either no light is lost (`sums_done_again`), or they concern dials, pixels, layers,
     /// values of a file, the shape of the water or what surfaces reflect, not light on its path. In a frame, all other warnings state the flux concerned.
-    pub const WITHOUT_FLUX: [&'static str; 18] = [
+    pub const WITHOUT_FLUX: [&'static str; 22] = [
         "calibrated_elsewhere",
         "half_clamped",
         "half_flushed",
+        "height_field_coarse_numbers",
         "mesh_material_clamped",
         "mesh_missing_material",
         "mesh_mtl_ignored",
+        "obstacle_outside_basin",
         "pixels_along_water",
         "pixels_outside_map",
         "further_layers_stay_dark",
@@ -284,9 +286,11 @@ impl Warning {
         "png_negative",
         "sea_without_waves",
         "setting_left_out",
+        "slopes_are_no_gradient",
         "sums_done_again",
         "target_error_not_met",
         "time_budget_not_met",
+        "water_map_coarse",
         "waves_smoothed",
     ];
 

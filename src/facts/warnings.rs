@@ -56,7 +56,9 @@ pub(super) fn warnings(facts: &SceneFacts, resolved: &ResolvedScene) -> Vec<Warn
     if facts.output.is_water_map() {
         let of_water = smoothed_waves(facts).into_iter();
         return of_water
+            .chain(idle_obstacles(facts))
             .chain(seas_without_waves(facts, &resolved.scene))
+            .chain(height_fields::warnings(facts))
             .chain(coarse_water_map(facts))
             .collect();
     }

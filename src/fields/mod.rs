@@ -30,7 +30,7 @@ const MAX_EXPANSION: u64 = 4096;
 const HEIGHT_NAMES: [&str; 6] = ["height", "Height", "h", "Y", "Z", "y"];
 
 /// Pairs of channels that hold slopes where a scene names none.
-const SLOPE_NAMES: [[&str; 2]; 3] = [["x", "z"], ["X", "Z"], ["R", "G"]];
+const SLOPE_NAMES: [[&str; 2]; 4] = [["slope.x", "slope.z"], ["x", "z"], ["X", "Z"], ["R", "G"]];
 
 /// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

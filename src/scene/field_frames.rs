@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::error::{Issue, IssueKind};
 use super::height_field::{FieldEdges, FieldHolds, HeightField, MAX_FRAMES, RowAxis};
+use super::json::MAX_ISSUES;
 use super::ranges::{self, number};
 use super::resolve::Assets;
 use super::strict::quoted;
@@ -64,6 +65,27 @@ impl FieldFrames {
         sums.sum::<f64>() / (columns * rows * self.count()) as f64
     }
 
+    /// Height of the water at rest where the scene does not say it, m: of a bounded field the mean along its edges, because water at rest is
+    /// beyond them; of a periodic one the mean of all heights.
+    pub fn rest_m(&self, edges: FieldEdges) -> f64 {
+        let [columns, rows] = self.file_size();
+        if edges == FieldEdges::Periodic {
+            return self.mean();
+        }
+        let [last_row, last_column] = [rows - 1, columns - 1];
+        let along_rows = (0..columns).flat_map(|column| [[0, column], [last_row, column]]);
+        let along_columns = (1..last_row).flat_map(|row| [[row, 0], [row, last_column]]);
+        let places: Vec<[usize; 2]> = along_rows.chain(along_columns).collect();
+        let frames = 0..self.count();
+        let of_frame = |frame: usize| -> f64 {
+            let heights = places
+                .iter()
+                .map(|[row, column]| self.value(frame, 0, *row, *column));
+            heights.sum()
+        };
+        frames.map(of_frame).sum::<f64>() / (places.len() * self.count()) as f64
+    }
+
     /// Height (m) or slope at a place in a frame: the first channel is that of heights or of slopes along x, the second that of slopes
     /// along z.
     pub fn value(&self, frame: usize, channel: usize, row: usize, column: usize) -> f64 {
@@ -99,6 +121,9 @@ impl File {
     }
 }
 
+/// Samples of water at rest that are added on each side of a bounded field.
+pub(super) const FLAT_MARGIN: u64 = 18;
+
 /// Finds the files of all height fields of a scene, by index into its waves; adds to `issues` what is wrong.
 pub(super) fn find(
     scene: &Scene,
@@ -106,7 +131,8 @@ pub(super) fn find(
     issues: &mut Vec<Issue>,
 ) -> BTreeMap<usize, Arc<FieldFrames>> {
     let mut found = BTreeMap::new();
-    let mut samples: u64 = scene.water.waves.iter().map(Wave::grid_samples).sum();
+    let others = scene.water.waves.iter().map(Wave::grid_samples);
+    let mut samples = others.fold(0, u64::saturating_add);
     for (index, wave) in scene.water.waves.iter().enumerate() {
         let Wave::HeightField(waves) = wave else {
             continue;
@@ -117,14 +143,17 @@ pub(super) fn find(
                 samples = samples.saturating_add(grid_samples(waves, &frames));
                 found.insert(index, Arc::new(frames));
             }
-            Err(more) => issues.extend(more),
+            Err(more) => {
+                let left = MAX_ISSUES.saturating_sub(issues.len());
+                issues.extend(more.into_iter().take(left));
+            }
         }
     }
     if samples > ranges::MAX_GRID_SAMPLES && !found.is_empty() {
         let issue = Issue::invalid(
             "/water/waves",
             format!(
-                "all spectra, basins and height fields together have {samples} samples; a bounded field of slopes counts four times"
+                "all spectra, basins and height fields together have {samples} samples; bounded fields have a margin of {FLAT_MARGIN} samples, and those of slopes count four times"
             ),
             format!("at most {}", ranges::MAX_GRID_SAMPLES),
         );
@@ -140,7 +169,11 @@ fn grid_samples(waves: &HeightField, frames: &FieldFrames) -> u64 {
         (FieldHolds::Slopes, FieldEdges::Bounded) => 4,
         _ => 1,
     };
-    mirrored * columns as u64 * rows as u64
+    let margin = match waves.edges {
+        FieldEdges::Bounded => 2 * FLAT_MARGIN,
+        FieldEdges::Periodic => 0,
+    };
+    mirrored * (columns as u64 + margin) * (rows as u64 + margin)
 }
 
 /// The files of one height field.
@@ -152,40 +185,51 @@ fn frames(
     let mut issues = Vec::new();
     let mut files: Vec<File> = Vec::new();
     let mut places = Vec::new();
-    let mut known: BTreeMap<&str, usize> = BTreeMap::new();
+    // Of each id its file, or nothing if it is of no use, which has been said.
+    let mut known: BTreeMap<&str, Option<usize>> = BTreeMap::new();
     // `validate` has reported lists that are too long, and empty ids.
     for (index, id) in waves.frames.iter().take(MAX_FRAMES).enumerate() {
         if id.is_empty() {
             continue;
         }
-        let file = match known.get(id.as_str()) {
-            Some(file) => *file,
+        let found = match known.get(id.as_str()) {
+            Some(found) => *found,
             None => {
                 let pointer = at(&format!("frames/{index}"));
-                let Some(field) = assets.field(id) else {
-                    issues.push(unknown(pointer, id));
-                    continue;
-                };
-                match file(waves, field, pointer, at, files.first()) {
-                    Ok(file) => files.push(file),
+                let read = assets
+                    .field(id)
+                    .ok_or_else(|| unknown(pointer.clone(), id))
+                    .and_then(|field| file(waves, field, pointer, at, files.first()));
+                let found = match read {
+                    Ok(file) => {
+                        files.push(file);
+                        Some(files.len() - 1)
+                    }
                     Err(issue) => {
                         issues.push(issue);
-                        continue;
+                        None
                     }
-                }
-                known.insert(id, files.len() - 1);
-                files.len() - 1
+                };
+                known.insert(id, found);
+                found
             }
         };
-        places.extend((0..files[file].field.frames).map(|frame| [file, frame]));
-    }
-    if places.len() > MAX_FRAMES {
-        let issue = Issue::invalid(
-            at("frames"),
-            format!("the files have {} frames together", places.len()),
-            format!("at most {MAX_FRAMES}"),
-        );
-        issues.push(issue.of_kind(IssueKind::LimitExceeded));
+        let Some(file) = found else { continue };
+        let frames = files[file].field.frames;
+        if places.len() + frames > MAX_FRAMES {
+            let issue = Issue::invalid(
+                at("frames"),
+                format!(
+                    "the files up to number {} have {} frames together",
+                    index + 1,
+                    places.len() + frames
+                ),
+                format!("at most {MAX_FRAMES}"),
+            );
+            issues.push(issue.of_kind(IssueKind::LimitExceeded));
+            break;
+        }
+        places.extend((0..frames).map(|frame| [file, frame]));
     }
     if places.len() > 1 && waves.frames_per_s.is_none() {
         issues.push(Issue::invalid(
@@ -359,7 +403,7 @@ fn heights(
     let (limit, rest) = match waves.holds {
         FieldHolds::Heights => (
             ranges::AMPLITUDE.max,
-            waves.rest_m.unwrap_or_else(|| frames.mean()),
+            waves.rest_m.unwrap_or_else(|| frames.rest_m(waves.edges)),
         ),
         FieldHolds::Slopes => (MAX_SLOPE, 0.0),
     };

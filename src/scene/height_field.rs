@@ -39,7 +39,7 @@ pub struct HeightField {
     /// `y`. EXR has its own names; PNG has `Y`, `A`, `R`, `G`, `B`; NPY has one channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub channel: Option<String>,
-    /// Names of the channels with the slopes ∂h/∂x and ∂h/∂z. Default: `x` and `z`, `X` and `Z`, or `R` and `G`. In an NPY of shape (rows,
+    /// Names of the channels with the slopes ∂h/∂x and ∂h/∂z. Default: `slope.x` and `slope.z` (as in a water map of this program, whose first sample lies half a texel within its corner), `x` and `z`, `X` and `Z`, or `R` and `G`. In an NPY of shape (rows,
     /// columns, 2) or (frames, rows, columns, 2) they are `x` and `z`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_items = 2, max_items = 2)]
@@ -59,8 +59,8 @@ pub struct HeightField {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(min_items = 2, max_items = 2)]
     pub slope_range: Option<[f64; 2]>,
-    /// Height of the water at rest among the scaled heights, m, −10⁶ … 10⁶; it is subtracted. Default: the mean of all samples of all
-    /// frames, so that absolute heights make no plateau. No height may then be beyond ±100 m. The heights found from slopes have the mean
+    /// Height of the water at rest among the scaled heights, m, −10⁶ … 10⁶; it is subtracted. Default, so that absolute
+    /// heights make no plateau: of a bounded field the mean along its edges in all frames, of a periodic one the mean of all samples. No height may then be beyond ±100 m. The heights found from slopes have the mean
     /// 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_m: Option<f64>,

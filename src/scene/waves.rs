@@ -38,12 +38,16 @@ impl<'de> Deserialize<'de> for Wave {
 }
 
 impl Wave {
-    /// Number of standing waves that have to be computed for all drops; 0 for other kinds.
+    /// Number of standing waves that have to be computed for all drops; 0 for other kinds. Waves in open water take as long as sixteen.
     pub fn swings(&self) -> u64 {
         match self {
             Self::Ripples(waves) => u64::from(waves.samples)
                 .saturating_pow(2)
-                .saturating_mul(waves.drops.len() as u64),
+                .saturating_mul(waves.drops.len() as u64)
+                .saturating_mul(match waves.walls {
+                    Walls::Absorbing => 16,
+                    Walls::Reflecting | Walls::Periodic => 1,
+                }),
             _ => 0,
         }
     }

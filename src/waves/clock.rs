@@ -3,8 +3,12 @@
 /// Frequencies of a sea that never repeats are multiples of 2⁻³⁰ Hz (about 10⁻⁹ Hz): it does repeat after 34 years.
 const UNIT_S: f64 = (1_u64 << 30) as f64;
 
-/// Moments of a sea that repeats are multiples of 2⁻⁴⁰ of the loop, so that a rounding error of the time does not show.
-const LOOP_BITS: u32 = 40;
+/// Moments of a sea that repeats are multiples of 2⁻²⁸ of the loop, so that a rounding error of the time does not show, not even after a
+/// thousand loops.
+const LOOP_BITS: u32 = 28;
+
+/// Share of a multiple above which a moment belongs to the next one: none at which a simple fraction of the loop lies.
+const LOOP_BORDER: f64 = 0.618_034;
 
 /// The unit of frequency of a sea.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +39,8 @@ impl Unit {
         // The remainder is exact.
         let turns = time_s.abs() % self.unit_s / self.unit_s;
         let phase = if self.repeats {
-            ((turns * (1_u64 << LOOP_BITS) as f64).round() as u128) << (96 - LOOP_BITS)
+            ((turns * (1_u64 << LOOP_BITS) as f64 + (1.0 - LOOP_BORDER)).floor() as u128)
+                << (96 - LOOP_BITS)
         } else {
             // Exact above 2⁻¹³ s, else to 2⁻⁶⁶ s.
             (turns * 2.0_f64.powi(96)) as u128

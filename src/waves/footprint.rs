@@ -1,10 +1,15 @@
 //! Where obstacles cut the water at rest, on the grid of a basin.
 
+use std::ops::Range;
+
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::cells::Cells;
 use crate::mesh::Mesh;
-use crate::scene::{Object, ResolvedScene, Ripples};
+use crate::scene::{Object, ResolvedScene, Ripples, Walls};
+
+/// Crossings that are held at once.
+const MOST_CROSSINGS: i64 = 1 << 22;
 
 /// The obstacles of a basin on its grid.
 #[derive(Clone, Debug)]
@@ -34,10 +39,13 @@ impl Footprint {
         for (place, index) in ripples.obstacles.iter().enumerate() {
             let index = *index as usize;
             let object = resolved.scene.objects.get(index);
-            let cut = match object.zip(resolved.meshes.get(index)) {
+            let mut cut = match object.zip(resolved.meshes.get(index)) {
                 Some((object, mesh)) => Cut::of(object, mesh, level_m),
                 None => Cut::default(),
             };
+            if cells.wraps && ripples.walls == Walls::Periodic {
+                cut.repeat(ripples);
+            }
             if !found.add(&cut, cells) {
                 found.idle.push(place);
             }
@@ -66,32 +74,36 @@ impl Footprint {
         let is_closed = cut.is_closed();
         for axis in [0, 1] {
             let (along, lines) = (cells.size[axis], cells.size[1 - axis]);
-            let mut crossings = cut.crossings(axis, cells);
-            for (line, places_m) in crossings.iter_mut().enumerate() {
-                places_m.sort_by(f64::total_cmp);
-                let at = |index: usize| match axis {
-                    0 => line * along + index,
-                    _ => index * lines + line,
-                };
-                for place_m in places_m.iter() {
-                    // The first sample at or beyond it.
-                    let index = ((place_m - cells.first_m[axis]) / cells.step_m[axis]).ceil();
-                    let last = if cells.wraps { along } else { along - 1 };
-                    if index >= 1.0 && index <= last as f64 {
-                        self.open[axis][at(index as usize % along)] = false;
-                        touches = true;
-                    }
-                }
-                if axis == 0 && is_closed {
-                    let mut passed = 0;
-                    for index in 0..along {
-                        let place_m = cells.place_m(axis, index);
-                        while passed < places_m.len() && places_m[passed] <= place_m {
-                            passed += 1;
-                        }
-                        if passed % 2 == 1 {
-                            self.inside[at(index)] = true;
+            for lines_of_block in cut.blocks(axis, cells) {
+                let first = lines_of_block.start;
+                let mut crossings = cut.crossings(axis, cells, lines_of_block);
+                for (line, places_m) in crossings.iter_mut().enumerate() {
+                    let line = first + line;
+                    places_m.sort_by(f64::total_cmp);
+                    let at = |index: usize| match axis {
+                        0 => line * along + index,
+                        _ => index * lines + line,
+                    };
+                    for place_m in places_m.iter() {
+                        // The first sample at or beyond it.
+                        let index = ((place_m - cells.first_m[axis]) / cells.step_m[axis]).ceil();
+                        let last = if cells.wraps { along } else { along - 1 };
+                        if index >= 1.0 && index <= last as f64 {
+                            self.open[axis][at(index as usize % along)] = false;
                             touches = true;
+                        }
+                    }
+                    if axis == 0 && is_closed {
+                        let mut passed = 0;
+                        for index in 0..along {
+                            let place_m = cells.place_m(axis, index);
+                            while passed < places_m.len() && places_m[passed] <= place_m {
+                                passed += 1;
+                            }
+                            if passed % 2 == 1 {
+                                self.inside[at(index)] = true;
+                                touches = true;
+                            }
                         }
                     }
                 }
@@ -147,6 +159,30 @@ impl Cut {
         Self { pieces_m }
     }
 
+    /// Adds the copies of an obstacle that reaches over the sides of a periodic basin: those next to it.
+    fn repeat(&mut self, ripples: &Ripples) {
+        let [min, max] = [ripples.min_m, ripples.max_m].map(DVec2::from);
+        let reaches_over = |p: &DVec2| p.cmplt(min).any() || p.cmpgt(max).any();
+        if !self.pieces_m.iter().flatten().any(reaches_over) {
+            return;
+        }
+        let around = [-1.0, 0.0, 1.0];
+        let shifts = around
+            .iter()
+            .flat_map(|x| around.map(|z| DVec2::new(*x, z)));
+        let shifts = shifts
+            .map(|shift| shift * (max - min))
+            .filter(|shift| *shift != DVec2::ZERO);
+        let copies: Vec<[DVec2; 2]> = shifts
+            .flat_map(|shift| {
+                self.pieces_m
+                    .iter()
+                    .map(move |piece_m| piece_m.map(|p| p + shift))
+            })
+            .collect();
+        self.pieces_m.extend(copies);
+    }
+
     /// Whether every piece continues at both of its ends.
     fn is_closed(&self) -> bool {
         let bits = |p: &DVec2| [p.x.to_bits(), p.y.to_bits()];
@@ -155,26 +191,55 @@ impl Cut {
         ends.chunk_by(|a, b| a == b).all(|same| same.len() % 2 == 0)
     }
 
-    /// Where the cut crosses each line of samples along `axis`, m.
-    fn crossings(&self, axis: usize, cells: &Cells) -> Vec<Vec<f64>> {
+    /// The lines of samples along `axis` that a piece may cross.
+    fn lines(piece_m: &[DVec2; 2], axis: usize, cells: &Cells) -> Range<usize> {
         let lines = cells.size[1 - axis];
-        let mut crossings = vec![Vec::new(); lines];
         let index = |place_m: f64| {
             let index = (place_m - cells.first_m[1 - axis]) / cells.step_m[1 - axis];
             index.clamp(0.0, lines as f64) as usize
         };
+        let [a, b] = piece_m.map(|p| p[1 - axis]);
+        // One more at each end, for rounding.
+        index(a.min(b)).saturating_sub(1)..(index(a.max(b)) + 2).min(lines)
+    }
+
+    /// Lines of samples along `axis`, in blocks of about [`MOST_CROSSINGS`] crossings at most: a mesh of many long fins crosses every line
+    /// with each of them.
+    fn blocks(&self, axis: usize, cells: &Cells) -> Vec<Range<usize>> {
+        let lines = cells.size[1 - axis];
+        let mut changes = vec![0_i64; lines + 1];
+        for piece_m in &self.pieces_m {
+            let range = Self::lines(piece_m, axis, cells);
+            if !range.is_empty() {
+                changes[range.start] += 1;
+                changes[range.end] -= 1;
+            }
+        }
+        let (mut blocks, mut start, mut crossed, mut now) = (Vec::new(), 0, 0, 0);
+        for (line, change) in changes[..lines].iter().enumerate() {
+            now += change;
+            if crossed > 0 && crossed + now > MOST_CROSSINGS {
+                blocks.push(start..line);
+                (start, crossed) = (line, 0);
+            }
+            crossed += now;
+        }
+        blocks.push(start..lines);
+        blocks
+    }
+
+    /// Where the cut crosses each line of a block along `axis`, m.
+    fn crossings(&self, axis: usize, cells: &Cells, block: Range<usize>) -> Vec<Vec<f64>> {
+        let mut crossings = vec![Vec::new(); block.len()];
         for piece_m in &self.pieces_m {
             let [a, b] = piece_m.map(|p| [p.x, p.y]);
-            let (low, high) = (a[1 - axis].min(b[1 - axis]), a[1 - axis].max(b[1 - axis]));
-            // One more at each end, for rounding.
-            let from = index(low).saturating_sub(1);
-            let to = (index(high) + 2).min(lines);
-            for (line, crossings) in crossings.iter_mut().enumerate().take(to).skip(from) {
+            let range = Self::lines(piece_m, axis, cells);
+            for line in range.start.max(block.start)..range.end.min(block.end) {
                 let line_m = cells.place_m(1 - axis, line);
                 // Each end belongs to one side, so that a line through a corner crosses once or twice, as it should.
                 if (a[1 - axis] <= line_m) != (b[1 - axis] <= line_m) {
                     let share = (line_m - a[1 - axis]) / (b[1 - axis] - a[1 - axis]);
-                    crossings.push(a[axis] + share * (b[axis] - a[axis]));
+                    crossings[line - block.start].push(a[axis] + share * (b[axis] - a[axis]));
                 }
             }
         }

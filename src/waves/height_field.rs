@@ -143,7 +143,7 @@ pub(super) fn heights(
     let mut no_gradient = 0.0;
     let mut heights_m = match waves.holds {
         FieldHolds::Heights => {
-            let rest_m = waves.rest_m.unwrap_or_else(|| frames.mean());
+            let rest_m = waves.rest_m.unwrap_or_else(|| frames.rest_m(waves.edges));
             let mut heights_m = values(waves, frames, moment, size, 0);
             heights_m
                 .iter_mut()
