@@ -3,7 +3,7 @@
 use caustica::accuracy::{convergence_order, metrics};
 use caustica::gpu::{BindGroups, Binding, Kernel, readback};
 use caustica::methods::caustic_volume::{DENSITY, LINEAR, METHOD, OFF, SHADOWS};
-use caustica::reference::closed_form::flat_water_irradiance;
+use caustica::reference::closed_form::{SineUnderZenith, flat_water_irradiance};
 use caustica::scene::{LayerName, Light, MethodChoice, ResolvedScene};
 use caustica::stages::points::Point;
 use serde_json::{Value, json};
@@ -51,7 +51,7 @@ fn pool(lights: Value, output: Value) -> Value {
         "floor": { "depth_m": 2, "size_m": [4, 4] },
         "lights": lights,
         "objects": [{ "mesh": "box.obj", "translation_m": [0.1, -1.2, 0.2], "scale": 0.5,
-                      "rotation": [0.2, 0.3, 0.1, 0.9] }],
+                      "rotation": [0.2052, 0.3078, 0.1026, 0.9234] }],
         "camera": { "position_m": [0, 2.5, 3], "target_m": [0, -1.2, 0] },
         "quality": { "water_cells": 97, "level_map_texels": 64 },
         "output": output
@@ -131,8 +131,8 @@ fn points_have_the_light_of_the_plain_program() {
                 100.0 * many
             );
             assert!(lit > 1000, "{name}: {lit}");
-            assert!(l1 <= 2e-3, "{name}, {density:?}: {l1:e}");
-            assert!(many <= 2e-2, "{name}, {density:?}: {many}");
+            assert!(l1 <= 1e-4, "{name}, {density:?}: {l1:e}");
+            assert!(many <= 2e-3, "{name}, {density:?}: {many}");
         }
     }
 }
@@ -160,13 +160,13 @@ fn the_comparison_rejects_wrong_light() {
     }
 }
 
-/// The error against the truth is that of the method, not of its implementation; and it falls with the cells.
+/// The error against the truth is that of the method, not of its implementation. It does not go to 0: the truth is the mean over a texel, and
+/// the method looks at one point in it.
 #[test]
-fn the_error_is_that_of_the_plain_program_and_falls_with_the_cells() {
+fn the_error_is_that_of_the_plain_program() {
     let truth = sine_pool::truth();
     for density in DENSITIES {
-        let mut errors = Vec::new();
-        for cells in [48, 96, 192, 384] {
+        for cells in [64, 128, 256] {
             let text = cells.to_string();
             let mut resolved =
                 scene_files::load("sine_pool", &[("/quality/water_cells", text.as_str())]);
@@ -179,16 +179,49 @@ fn the_error_is_that_of_the_plain_program_and_falls_with_the_cells() {
             let plain = plain_volumes::irradiance(&resolved, &points, density);
             let plain: Vec<f64> = plain.iter().flat_map(|lit| lit.irradiance).collect();
             let plain = error(&plain);
-            println!("{density:?}, {cells} cells: {own:.3e}, plain program {plain:.3e}");
+            println!("{density:?}, {cells} cells: {own:.4e}, plain program {plain:.4e}");
             assert!(own <= 1.2 * plain && own >= plain / 1.2, "{own} {plain}");
-            errors.push((f64::from(cells), own));
         }
+    }
+}
+
+/// Where the light does not fold, the light at a point comes nearer to the closed form with the cells: as the cell's size with a constant
+/// density, as its square with a linear one.
+#[test]
+fn the_error_at_points_falls_with_the_cells() {
+    let closed = SineUnderZenith {
+        amplitude_m: 0.02,
+        wavelength_m: 1.0,
+        phase_rad: std::f64::consts::FRAC_PI_2,
+        ior: 1.333,
+        depth_m: 2.0,
+        extinction_per_m: 0.1,
+    };
+    for (density, least) in [(Density::Constant, 0.9), (Density::Linear, 1.8)] {
+        let errors = [32, 64, 128, 256].map(|cells| {
+            let scene = json!({
+                "water": {
+                    "waves": [{ "kind": "sine", "amplitude_m": 0.02, "wavelength_m": 1.0, "direction_deg": 0, "phase_deg": 90 }],
+                    "absorption_per_m": [0.1, 0.1, 0.1], "ior": 1.333
+                },
+                "floor": { "depth_m": 2, "size_m": [4, 4] },
+                "lights": [{ "kind": "sun", "elevation_deg": 90, "irradiance_w_m2": [1, 1, 1] }],
+                "quality": { "water_cells": cells },
+                "output": { "kind": "irradiance_map", "receiver": "floor",
+                            "min_m": [-1, -1], "max_m": [1, 1], "width": 64, "height": 32 }
+            });
+            let resolved = with(scene, density, true);
+            let points = points_of(&resolved);
+            let due: Vec<f64> = points
+                .iter()
+                .map(|point| closed.irradiance_at(f64::from(point.position_m[0])))
+                .collect();
+            let map = Map::from(&resolved);
+            let found: Vec<f64> = map.texels.iter().map(|texel| texel[0]).collect();
+            (f64::from(cells), metrics::relative_l1(&found, &due).unwrap())
+        });
         let order = convergence_order(&errors);
-        println!("{density:?}: order {order:.2}");
-        let least = match density {
-            Density::Constant => 0.9,
-            Density::Linear => 1.6,
-        };
+        println!("{density:?}: {errors:?}, order {order:.2}");
         assert!(order >= least, "{density:?}: {order}");
     }
 }
@@ -243,7 +276,7 @@ fn points_on_sides_and_corners_are_counted_once() {
             var count = 0u;
             for (var k = 0u; k < arrayLength(&triangles); k++) {
                 let v = triangles[k].xyz;
-                if cut_weights(v, corners[v.x] - p, corners[v.y] - p, corners[v.z] - p).w != 0.0 { count += 1u; }
+                if is_in(cut_between(v, corners[v.x] - p, corners[v.y] - p, corners[v.z] - p)) { count += 1u; }
             }
             counts[id.x] = count;
         }";
@@ -335,7 +368,7 @@ fn points_on_sides_and_corners_are_counted_once() {
         gpu.queue.submit([encoder.finish()]);
         let read: Vec<u32> = readback::read(gpu, &counts, 4 * places.len() as u64).unwrap();
         gpu.check().unwrap();
-        assert!(places.len() > 400);
+        assert_eq!(places.len(), 17 * 17);
         for (place, count) in places.iter().zip(&read) {
             assert_eq!(*count, 1, "{place:?} of {corners:?}");
         }
@@ -389,45 +422,48 @@ fn a_receiver_in_64_pieces_has_no_seams() {
 /// Waves that focus above the floor: several sheets of light lie over each other, and their light adds up to that of the truth.
 #[test]
 fn folds_add_up() {
-    let mut scene = pool(
-        sun(),
-        json!({ "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": 64, "height": 64 }),
+    const BLOCKS: usize = 8;
+    const SIDE: usize = 256;
+    let scene = |side: usize| {
+        let mut scene = pool(
+            sun(),
+            json!({ "kind": "irradiance_map", "receiver": "floor", "min_m": [-1, -1], "max_m": [1, 1], "width": side, "height": side }),
+        );
+        scene["objects"] = json!([]);
+        scene["floor"] = json!({ "depth_m": 5, "size_m": [8, 8] });
+        scene["water"]["waves"][0]["amplitude_m"] = json!(0.05);
+        scene["quality"]["water_cells"] = json!(256);
+        scene
+    };
+    // Means over blocks of points: the brightest lines lie between points.
+    let truth = truths::floor_map(
+        &scene_files::scene(scene(BLOCKS)),
+        &harness::truth_settings(2e-3),
     );
-    scene["objects"] = json!([]);
-    scene["floor"] = json!({ "depth_m": 5, "size_m": [8, 8] });
-    scene["water"]["waves"][0]["amplitude_m"] = json!(0.05);
-    scene["quality"]["water_cells"] = json!(256);
     for density in DENSITIES {
-        let resolved = with(scene.clone(), density, true);
-        let truth = truths::floor_map(&resolved, &harness::truth_settings(2e-3));
+        let resolved = with(scene(SIDE), density, true);
         let points = points_of(&resolved);
         let plain = plain_volumes::irradiance(&resolved, &points, density);
         let folded = plain.iter().filter(|lit| lit.volumes > 2).count();
         assert!(folded > plain.len() / 2, "{folded} of {}", plain.len());
         let map = Map::from(&resolved);
-        // Blocks of 8 × 8 texels: single texels hold the brightest lines, which lie between points.
-        let blocks = |values: &[[f64; 3]]| -> Vec<f64> {
-            (0..64)
-                .flat_map(|block| {
-                    (0..3).map(move |c| {
-                        let texel = |k: usize| (block / 8 * 8 + k / 8) * 64 + block % 8 * 8 + k % 8;
-                        (0..64).map(|k| values[texel(k)][c]).sum::<f64>() / 64.0
-                    })
-                })
-                .collect()
-        };
-        let error = metrics::relative_l1(&blocks(&map.texels), &blocks(&truth.irradiance)).unwrap();
-        let mean = (0..3)
-            .map(|c| {
-                let due = truth.irradiance.iter().map(|t| t[c]).sum::<f64>() / 4096.0;
-                (map.mean(c) / due - 1.0).abs()
-            })
-            .fold(0.0, nan_fails);
+        let mut blocks = vec![[0.0; 3]; BLOCKS * BLOCKS];
+        let per_side = SIDE / BLOCKS;
+        for (k, texel) in map.texels.iter().enumerate() {
+            let block = &mut blocks[k / SIDE / per_side * BLOCKS + k % SIDE / per_side];
+            for (sum, value) in block.iter_mut().zip(texel) {
+                *sum += value / (per_side * per_side) as f64;
+            }
+        }
+        let due = truth.irradiance.as_flattened();
+        let error = metrics::relative_l1(blocks.as_flattened(), due).unwrap();
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let off = (mean(map.values()) / mean(due) - 1.0).abs();
         println!(
-            "{density:?}: {folded} texels in folds, blocks off by {error:.1e}, mean by {mean:.1e}"
+            "{density:?}: {folded} texels in folds, blocks off by {error:.1e}, mean by {off:.1e}"
         );
         assert!(error <= 3e-2, "{density:?}: {error:e}");
-        assert!(mean <= 1e-2, "{density:?}: {mean:e}");
+        assert!(off <= 5e-3, "{density:?}: {off:e}");
     }
 }
 
@@ -509,7 +545,7 @@ fn cuts_without_area_and_receivers_along_the_light_are_finite() {
                 assert!(lit[0] < 1.0, "{point:?} {lit:?}");
             }
         }
-        assert!(sides > 300, "{sides}");
+        assert!(sides > 200, "{sides}");
     }
 }
 

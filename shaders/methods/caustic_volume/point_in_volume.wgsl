@@ -1,5 +1,7 @@
 // Point in volume — light at points from the caustic volumes around them (Sandberg & Falemo 2005, §3.3, §3.4). One invocation per point of a
 // band. It descends through the blocks of volumes that may hold the point, in the order of their numbers, so that sums are always the same.
+// A CPU driver runs both sides of every branch, but leaves a loop that no invocation needs. So what is expensive and rare is in loops of its
+// own, also where it runs once.
 #import "lib/attenuation.wgsl"
 #import "shared/light.wgsl"
 #import "shared/grid.wgsl"
@@ -23,6 +25,8 @@ const LEAST_DOUBLE_AREA_M2: f32 = 1e-30;
 // only as fine as the grid on which its map was drawn.
 const OFF_SHARE: f32 = 2e-5;
 const OFF_FOOTPRINT: f32 = 0.02;
+
+const VOLUMES_OF_BLOCK: u32 = 2u * BLOCK_CELLS * BLOCK_CELLS;
 
 // The point of this invocation.
 var<private> seen: Point;
@@ -60,15 +64,27 @@ fn edge_side(a: vec2f, b: vec2f, is_forward: bool) -> vec2f {
     return vec2f(double_area, side) * select(-1.0, 1.0, is_forward);
 }
 
-// Weights of the corners where the point lies in the cut of a volume, whichever way round the cut is, and twice the cut's signed area; 0 where
-// it does not.
-fn cut_weights(vertices: vec3u, p0: vec2f, p1: vec2f, p2: vec2f) -> vec4f {
+// The three edges of a cut, each against the corner that it leaves out, see edge_side().
+struct Cut {
+    double_areas: vec3f,
+    sides: vec3f,
+}
+
+fn cut_between(vertices: vec3u, p0: vec2f, p1: vec2f, p2: vec2f) -> Cut {
     let e0 = edge_side(p1, p2, vertices.y < vertices.z);
     let e1 = edge_side(p2, p0, vertices.z < vertices.x);
     let e2 = edge_side(p0, p1, vertices.x < vertices.y);
-    let double_area = e0.x + e1.x + e2.x;
-    if e0.y != e1.y || e0.y != e2.y || abs(double_area) < LEAST_DOUBLE_AREA_M2 { return vec4f(0.0); }
-    return vec4f(vec3f(e0.x, e1.x, e2.x) / double_area, double_area);
+    return Cut(vec3f(e0.x, e1.x, e2.x), vec3f(e0.y, e1.y, e2.y));
+}
+
+// Twice the signed area of a cut.
+fn double_area_of(cut: Cut) -> f32 {
+    return cut.double_areas.x + cut.double_areas.y + cut.double_areas.z;
+}
+
+// Whether the point lies in the cut, whichever way round that is.
+fn is_in(cut: Cut) -> bool {
+    return cut.sides.x == cut.sides.y && cut.sides.x == cut.sides.z && abs(double_area_of(cut)) >= LEAST_DOUBLE_AREA_M2;
 }
 
 fn vertices_of(cell: vec2u, half: u32) -> vec3u {
@@ -114,10 +130,9 @@ fn is_blocked(entry_m: vec3f, path_m: f32) -> bool {
     let from_m = seen.position_m + seen.normal * (OFF_SHARE * far_m + OFF_FOOTPRINT * seen.footprint_m);
     let way = entry_m - from_m;
     let reach_m = length(way);
-    if reach_m < 1e-12 { return false; }
-    let direction = way / reach_m;
+    let direction = way / max(reach_m, 1e-12);
     let inverse = safe_inverse(direction);
-    let end = instance_nodes(volumes.instance_count);
+    let end = select(0u, instance_nodes(volumes.instance_count), volumes.has_shadows == 1u);
     var node = 0u;
     while node < end {
         let step = step_instances(node, from_m, inverse, reach_m);
@@ -128,53 +143,61 @@ fn is_blocked(entry_m: vec3f, path_m: f32) -> bool {
     return false;
 }
 
-// Light of one volume on the point, W/m².
-fn light_of(cell: vec2u, half: u32) -> vec3f {
-    let flux = volume_flux[2u * (cell.y * light.cells + cell.x) + half];
-    if flux == 0.0 { return vec3f(0.0); }
-    let vertices = vertices_of(cell, half);
-    let cut = cut_weights(vertices, aside_m(vertices.x), aside_m(vertices.y), aside_m(vertices.z));
-    if cut.w == 0.0 { return vec3f(0.0); }
+// Cell and half of volume `k` of a block of level 0.
+fn cell_in(block: vec2u, k: u32) -> vec2u {
+    let cell = k >> 1u;
+    return BLOCK_CELLS * block + vec2u(cell % BLOCK_CELLS, cell / BLOCK_CELLS);
+}
+
+fn flux_of(cell: vec2u, half: u32) -> f32 {
+    return volume_flux[2u * (cell.y * light.cells + cell.x) + half];
+}
+
+fn cut_of(vertices: vec3u) -> Cut {
+    return cut_between(vertices, aside_m(vertices.x), aside_m(vertices.y), aside_m(vertices.z));
+}
+
+// Whether volume `k` of a block holds the point and has light; false also where there is no such volume.
+fn holds(block: vec2u, k: u32) -> bool {
+    let cell = cell_in(block, k);
+    if any(cell >= vec2u(light.cells)) { return false; }
+    return is_in(cut_of(vertices_of(cell, k & 1u))) && flux_of(cell, k & 1u) > 0.0;
+}
+
+// Light of volume `k` of a block, in whose cut the point lies, W/m².
+fn light_of(block: vec2u, k: u32) -> vec3f {
+    let cell = cell_in(block, k);
+    let vertices = vertices_of(cell, k & 1u);
+    let cut = cut_of(vertices);
+    // Computed again, so it may differ in the last digit from what holds() has found.
+    let double_area = double_area_of(cut);
+    if abs(double_area) < LEAST_DOUBLE_AREA_M2 { return vec3f(0.0); }
+    let weights = cut.double_areas / double_area;
     var direction = vec3f(0.0);
     var entry_m = vec3f(0.0);
     var path_m = 0.0;
-    for (var k = 0u; k < 3u; k++) {
-        let ray = volume_rays[vertices[k]];
-        let height_m = surface[vertices[k]].x;
+    for (var i = 0u; i < 3u; i++) {
+        let ray = volume_rays[vertices[i]];
+        let height_m = surface[vertices[i]].x;
         let per_depth = sqrt(1.0 + dot(ray.zw, ray.zw));
-        direction += cut[k] * vec3f(ray.z, -1.0, ray.w) / per_depth;
-        entry_m += cut[k] * vec3f(ray.x - ray.z * height_m, height_m, ray.y - ray.w * height_m);
-        path_m += cut[k] * (height_m + depth_m) * per_depth;
+        direction += weights[i] * vec3f(ray.z, -1.0, ray.w) / per_depth;
+        entry_m += weights[i] * vec3f(ray.x - ray.z * height_m, height_m, ray.y - ray.w * height_m);
+        path_m += weights[i] * (height_m + depth_m) * per_depth;
     }
-    if path_m < 0.0 {
-        // Above the water where its light enters. A bared floor is lit all the same, by a path of no length, as with other methods.
-        if seen.receiver != 0.0 { return vec3f(0.0); }
-        path_m = 0.0;
-    }
+    // Above the water where its light enters a point gets none. A bared floor is lit all the same, by a path of no length, as with other methods.
+    if path_m < 0.0 && seen.receiver != 0.0 { return vec3f(0.0); }
+    path_m = max(path_m, 0.0);
     // Flux through a horizontal square metre over flux through one of the receiver. Rays of volumes fall, so this is finite.
     let cosine = -dot(seen.normal, direction) / -direction.y;
-    if cosine <= 0.0 { return vec3f(0.0); }
-    if volumes.has_shadows == 1u && volumes.instance_count > 0u && is_blocked(entry_m, path_m) { return vec3f(0.0); }
-    var density = 2.0 * flux / abs(cut.w);
-    if volumes.is_linear == 1u {
-        density = dot(cut.xyz, vec3f(density_at(vertices.x), density_at(vertices.y), density_at(vertices.z)));
-    }
+    if cosine <= 0.0 || is_blocked(entry_m, path_m) { return vec3f(0.0); }
+    var density = 2.0 * flux_of(cell, k & 1u) / abs(double_area);
+    if volumes.is_linear == 1u { density = 0.0; }
+    for (var i = 0u; i < 3u * volumes.is_linear; i++) { density += weights[i] * density_at(vertices[i]); }
     var left = vec3f(1.0);
     if ATTENUATES {
         for (var c = 0; c < 3; c++) { left[c] = transmission(light.extinction_per_m[c], path_m); }
     }
     return volumes.power.xyz * left * (density * cosine);
-}
-
-// Light of the volumes in a block of level 0.
-fn light_of_block(block: vec2u) -> vec3f {
-    var sum = vec3f(0.0);
-    for (var i = 0u; i < BLOCK_CELLS * BLOCK_CELLS; i++) {
-        let cell = BLOCK_CELLS * block + vec2u(i % BLOCK_CELLS, i / BLOCK_CELLS);
-        if any(cell >= vec2u(light.cells)) { continue; }
-        for (var half = 0u; half < 2u; half++) { sum += light_of(cell, half); }
-    }
-    return sum;
 }
 
 // Column and row of a block from its number along the curve that visits four blocks, then the next four (Morton 1966).
@@ -199,24 +222,37 @@ fn point_in_volume_main(@builtin(global_invocation_id) id: vec3u) {
     var sum = vec3f(0.0);
     var level = volumes.level;
     var number = 0u;
+    var block = vec2u(0u);
+    var is_done = false;
     // Each block is visited once at most, so this ends.
-    loop {
-        let side = side_of(level);
-        let block = block_at(number);
-        if all(block < vec2u(side)) && may_hold(first_of(level) + block.y * side + block.x) {
-            if level > 0u {
+    while !is_done {
+        // On to the next block of level 0 that may hold the point.
+        var is_found = false;
+        while !is_done && !is_found {
+            let side = side_of(level);
+            block = block_at(number);
+            let may = all(block < vec2u(side)) && may_hold(first_of(level) + block.y * side + block.x);
+            is_found = may && level == 0u;
+            if may && level > 0u {
                 level -= 1u;
                 number = number << 2u;
-                continue;
+            } else {
+                number += 1u;
+                let up = min(firstTrailingBit(number) / 2u, volumes.level - level);
+                number = number >> (2u * up);
+                level += up;
+                is_done = level == volumes.level;
             }
-            sum += light_of_block(block);
         }
-        number += 1u;
-        while level < volumes.level && (number & 3u) == 0u {
-            number = number >> 2u;
-            level += 1u;
+        // Which of its volumes do.
+        var held = 0u;
+        for (var k = 0u; k < select(0u, VOLUMES_OF_BLOCK, is_found); k++) {
+            held |= select(0u, 1u << k, holds(block, k));
         }
-        if level >= volumes.level { break; }
+        while held != 0u {
+            sum += light_of(block, firstTrailingBit(held));
+            held &= held - 1u;
+        }
     }
     point_irradiance[index] += vec4f(sum, 0.0);
 }

@@ -79,9 +79,9 @@ fn volume_levels_main(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < 4u; i++) {
         let child = 2u * id.xy + vec2u(i & 1u, i >> 1u);
         if any(child >= vec2u(finer)) { continue; }
-        let from = 2u * (first_of(volumes.level - 1u) + child.y * finer + child.x);
-        low = min(low, volume_bounds[from]);
-        high = max(high, volume_bounds[from + 1u]);
+        let source = 2u * (first_of(volumes.level - 1u) + child.y * finer + child.x);
+        low = min(low, volume_bounds[source]);
+        high = max(high, volume_bounds[source + 1u]);
     }
     let at = 2u * (first_of(volumes.level) + id.y * blocks + id.x);
     volume_bounds[at] = low;
