@@ -81,7 +81,12 @@ impl<'a> Blocked<'a> {
     /// Flux that arrives at further objects although an object nearer to the light has blocked it already, W; sum over all lights and over
     /// the further objects. Taken just under the water at rest, without absorption.
     pub(super) fn blocked_again_w(&self) -> [f64; 3] {
-        self.of_all_lights(|light| self.unit_flux_again(light))
+        self.of_all_lights(|light| self.unit_flux_met(light, |met| met.saturating_sub(1)))
+    }
+
+    /// Flux that hits an object at all, W; sum over all lights, taken in the same way.
+    pub(super) fn blocked_w(&self) -> [f64; 3] {
+        self.of_all_lights(|light| self.unit_flux_met(light, |met| met.min(1)))
     }
 
     /// Flux that a light within the bounds of an object sends onto it, W.
@@ -151,20 +156,20 @@ impl<'a> Blocked<'a> {
         shadowed.count() as f64 * step_m.element_product()
     }
 
-    /// Flux of a light of unit power that hits a second and further objects, once for each of them, m² or sr.
-    fn unit_flux_again(&self, light: &BeamSet) -> f64 {
-        let again = |from_m: DVec3, direction: DVec3| {
+    /// Flux of a light of unit power, m² or sr, that counts as often as `counts` says of the number of objects that it meets.
+    fn unit_flux_met(&self, light: &BeamSet, counts: fn(usize) -> usize) -> f64 {
+        let met = |from_m: DVec3, direction: DVec3| {
             // Rays that go up end at the water.
             let reach_m = if direction.y > 0.0 {
                 -from_m.y.min(0.0) / direction.y
             } else {
                 EVERYWHERE_M
             };
-            let met = self
+            let hit = self
                 .facts
                 .wet_objects()
                 .filter(|&object| self.meets(object, from_m, direction, reach_m));
-            met.count().saturating_sub(1) as f64
+            counts(hit.count()) as f64
         };
         let wet = self.facts.wet_objects().count().max(1) as f64;
         let rays = (RAYS / (wet * self.facts.lights.beam_sets.len() as f64)).clamp(64.0, 4096.0);
@@ -175,7 +180,7 @@ impl<'a> Blocked<'a> {
                 let followed = sphere(directions).filter(|&direction| {
                     is_all || direction.y < 0.0 && light.window.holds(octahedral_place(direction))
                 });
-                let sum: f64 = followed.map(|direction| again(position_m, direction)).sum();
+                let sum: f64 = followed.map(|direction| met(position_m, direction)).sum();
                 return sum * 2.0 * TAU / f64::from(directions);
             }
             (_, Some(objects)) => objects.within(light.window),
@@ -187,7 +192,7 @@ impl<'a> Blocked<'a> {
             let (to_light, _) = place.to(&light.source)?;
             let direction = refract_direction(-to_light, DVec3::Y, self.facts.water.ior)?;
             let enters = fresnel_transmittance(to_light.y, self.facts.water.ior);
-            Some(again(place.at_m, direction) * enters * place.unit_flux(&light.source))
+            Some(met(place.at_m, direction) * enters * place.unit_flux(&light.source))
         };
         places(window, side).filter_map(falls).sum()
     }

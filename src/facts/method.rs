@@ -71,6 +71,8 @@ pub struct OwnCells {
 /// Effects that a method leaves out and others simulate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LeavesOut {
+    /// All shadows of objects under water.
+    pub shadows: bool,
     /// Shadows of objects on other objects.
     pub shadows_on_objects: bool,
     /// Light on further layers of objects than the first.

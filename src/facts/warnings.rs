@@ -10,7 +10,7 @@ use super::height_fields;
 use super::source::Source;
 use super::unfollowed;
 use super::window::Rect;
-use super::{BeamSet, SceneFacts};
+use super::{BeamSet, Product, SceneFacts};
 use crate::mesh::{Mesh, mtl, repair};
 use crate::scene::{ResolvedScene, Scene, Wave};
 use crate::stats::Warning;
@@ -249,6 +249,20 @@ fn left_out_by_method(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning>
         return all;
     }
     let method = &facts.method;
+    if !method.conserves_energy && method.product == Product::PointIrradiance {
+        all.extend(without_account(facts));
+    }
+    if wet > 0 && method.leaves_out.shadows {
+        let found = warning(
+            "objects_cast_no_shadows",
+            format!(
+                "method {} leaves shadows out: light that an object blocks still reaches what is behind it",
+                method.name
+            ),
+            "/quality/method",
+        );
+        all.push(with_flux(found, blocked.blocked_w()));
+    }
     if wet > 1 && method.leaves_out.shadows_on_objects {
         let found = warning(
             "objects_cast_no_shadows_on_objects",
@@ -271,6 +285,32 @@ fn left_out_by_method(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning>
         ));
     }
     all
+}
+
+/// The warning about a method that computes light at points only, and keeps no account of it.
+fn without_account(facts: &SceneFacts) -> Option<Warning> {
+    let mut sum_w = [0.0; 3];
+    for set in &facts.lights.beam_sets {
+        let unit = match set.source {
+            Source::Sun { to_light } => set.window.size().element_product() * to_light.y,
+            Source::Point { position_m } => blocked::rect_sr(set.window, position_m),
+            Source::Submerged { .. } => 0.0,
+        };
+        for (sum, power) in sum_w.iter_mut().zip(set.power) {
+            *sum += power * unit;
+        }
+    }
+    facts.has_receiver().then(|| {
+        let found = warning(
+            "method_does_not_conserve",
+            format!(
+                "method {} computes light at points, so it keeps no energy account; the flux is that of the lights onto the water over the receivers, and light that falls less than a metre per kilometre under water is left out of the points",
+                facts.method.name
+            ),
+            "/quality/method",
+        );
+        with_flux(found, sum_w)
+    })
 }
 
 impl SceneFacts {

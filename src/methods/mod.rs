@@ -7,6 +7,7 @@
 //! A method reads shared slots (water surface, beams, receivers, points) and makes one product. How to add one:
 //! `docs/adding-a-method.md`.
 
+pub mod caustic_volume;
 mod check;
 mod describe;
 pub mod level_map;
@@ -33,7 +34,7 @@ macro_rules! list {
     };
 }
 
-list![level_map, planes, volumetric, photon];
+list![level_map, planes, volumetric, photon, caustic_volume];
 
 /// A method.
 pub struct Method {

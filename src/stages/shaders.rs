@@ -53,6 +53,7 @@ pub static SHARED: Embedded = embed_shaders![
     "shared/trace_light.wgsl",
     "shared/unit_flux.wgsl",
     "shared/view.wgsl",
+    "shared/volumes.wgsl",
     "shared/water_surface.wgsl",
     "shared/wide_footprint.wgsl",
     "stages/beams.wgsl",

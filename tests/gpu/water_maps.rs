@@ -150,7 +150,7 @@ fn bands_and_pieces_leave_no_trace() {
     let resolved = scene_files::scene(scene(&waves, output));
     let frame = assert_is_surface("2048 × 1100", &resolved, 4.0);
     assert_eq!(frame.stats.passes[0].runs, 2);
-    let mut renderer = harness::new_renderer(&caustica::config::RenderConfig::default());
+    let mut renderer = harness::new_renderer(&RenderConfig::default());
     renderer.cut_into(Some(1000));
     let cut = harness::render_with(&mut renderer, &resolved);
     assert!(renderer.pieces().0 > 10, "{:?}", renderer.pieces());

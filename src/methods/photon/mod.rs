@@ -178,6 +178,7 @@ pub static METHOD: Method = Method {
             dial: PHOTONS_PER_SIDE.name,
         }),
         leaves_out: LeavesOut {
+            shadows: false,
             shadows_on_objects: false,
             further_layers: true,
         },

@@ -72,6 +72,7 @@ pub static METHOD: Method = Method {
         leaves_out: LeavesOut {
             shadows_on_objects: true,
             further_layers: true,
+            ..LeavesOut::default()
         },
         ..MethodFacts::new(METHOD.name, Product::ReceiverMaps)
     },
