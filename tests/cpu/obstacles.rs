@@ -178,8 +178,10 @@ fn strongly_damped_water_creeps_back_as_it_should() {
                 let (found, exact) = (basin.at(time_s), basin.exact().at(time_s));
                 let whole = rms(&sampled(&exact, [-0.5; 2], [0.5; 2]));
                 let error = difference(&found, &exact);
+                // What absorbing walls return is a ten-thousandth of the energy.
+                let most = if walls == "absorbing" { 1e-2 } else { 2e-3 };
                 assert!(
-                    error < 2e-3 * whole,
+                    error < most * whole,
                     "{damping_per_s} {walls} {time_s} {error} {whole}"
                 );
             }
@@ -215,9 +217,10 @@ fn absorbing_walls_return_less_than_a_hundredth_of_the_energy() {
                 "{max_m:?} {position_m:?} {samples} {time_s}: {share}"
             );
         }
-        // Nothing grows in the layer.
+        // Nothing grows in the layer: at last there is the tail that waves on a plane leave behind, H R²/(c t)².
+        let tail = (radius_m / (speed_m_per_s() * 8.0)).powi(2);
         let late = rms(&sampled(&basin.at(8.0), [-0.5; 2], max_m));
-        assert!(late < 1e-3 * start, "{late}");
+        assert!((late / tail - 1.0).abs() < 0.3, "{late} {tail}");
     }
 }
 
@@ -226,13 +229,15 @@ fn absorbing_walls_return_less_than_a_hundredth_of_the_energy() {
 #[test]
 fn one_mode_swings_by_its_closed_form_and_keeps_its_energy() {
     let omega = PI * speed_m_per_s();
+    // Means over z leave out modes that change along it.
     let amplitude = |basin: &Basin, time_s: f64| {
         let surface = basin.at(time_s);
-        let sum: f64 = (0..64)
-            .map(|i| (f64::from(i) + 0.5) / 64.0)
-            .map(|x| surface.at(x - 0.5, -0.4).height_m * (PI * x).cos())
+        let places = (0..64).flat_map(|i| (0..16).map(move |k| (i, k)));
+        let sum: f64 = places
+            .map(|(i, k)| ((f64::from(i) + 0.5) / 64.0, (f64::from(k) + 0.5) / 64.0))
+            .map(|(x, z)| surface.at(x - 0.5, z - 0.5).height_m * (PI * x).cos())
             .sum();
-        sum / 32.0
+        sum / 512.0
     };
     let errors = [32, 64].map(|samples| {
         let basin = Basin::stepped(
@@ -307,8 +312,8 @@ fn waves_are_reflected_by_a_block_as_by_a_wall() {
         for i in 0..64 {
             for k in 0..128 {
                 let (x, z) = (
-                    -0.5 + (i as f64 + 0.5) / 128.0,
-                    -0.5 + (k as f64 + 0.5) / 128.0,
+                    -0.5 + (f64::from(i) + 0.5) / 128.0,
+                    -0.5 + (f64::from(k) + 0.5) / 128.0,
                 );
                 let difference_m = found.at(x, z).height_m - expected.at(x, z).height_m;
                 assert!(
