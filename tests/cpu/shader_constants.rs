@@ -187,12 +187,19 @@ fn facts() -> SceneFacts {
 
 /// The same scene with any method, its dials off their defaults.
 fn facts_with(method: &Method) -> SceneFacts {
+    facts_with_words(method, usize::MAX)
+}
+
+/// The same, with the word of this number, or the last, for each dial that has words.
+fn facts_with_words(method: &Method, number: usize) -> SceneFacts {
     let mut choice = MethodChoice::named(method.name);
     for dial in method.dials {
         choice = match dial.kind {
             DialKind::Integer { least, most, .. } => choice.with(dial, 7_u32.clamp(least, most)),
             DialKind::Number { least, most, .. } => choice.with(dial, 0.7 * least + 0.3 * most),
-            DialKind::Word { words, .. } => choice.with(dial, words[words.len() - 1].name),
+            DialKind::Word { words, .. } => {
+                choice.with(dial, words[number.min(words.len() - 1)].name)
+            }
         };
     }
     let resolved = scene_files::scene(json!({
@@ -356,12 +363,19 @@ fn a_level_map(facts: &SceneFacts) -> LevelMapRun {
 #[test]
 fn every_entry_point_is_run_by_a_step() {
     for method in methods::ALL {
-        let facts = facts_with(method);
-        let level_map = a_level_map(&facts);
+        let words = method.dials.iter().map(|dial| dial.words().len());
+        let numbers = 0..words.max().unwrap_or(0).max(1);
+        let all: Vec<SceneFacts> = numbers
+            .map(|number| facts_with_words(method, number))
+            .collect();
         for pass in method.pipeline() {
             let module = module(pass.shader);
-            let run = own_run(pass, &level_map, &facts);
-            let steps = pass.steps.of(&facts, run).unwrap();
+            let steps_of = |facts| {
+                let level_map = a_level_map(facts);
+                let run = own_run(pass, &level_map, facts);
+                pass.steps.of(facts, run).unwrap()
+            };
+            let steps: Vec<stages::Step> = all.iter().flat_map(steps_of).collect();
             check_entries(pass, &module, &steps);
         }
     }

@@ -186,9 +186,9 @@ fn variation_in_words(s: &SeaStudy) -> Option<String> {
     let deep = mean(s.places.iter().filter(|p| p.place.depth_m == 25.0), cv)?;
     let ratio = shallow / deep;
     let verdict = if ratio > 1.3 * CV_RATIO {
-        "More than measured: long waves, which focus at depth, are missing here."
+        "More than measured. One reason may be that long waves, which focus at depth, are missing here."
     } else if ratio < CV_RATIO / 1.3 {
-        "Less than measured: scattering, which is left out here, evens out the light at sea, and the more the deeper."
+        "Less than measured. One reason may be that scattering, which is left out here, evens out the light at sea, and the more the deeper."
     } else {
         "About the same."
     };
@@ -238,8 +238,7 @@ fn flashes_in_words(s: &SeaStudy) -> Option<String> {
         "Ours are fewer"
     };
     let length = if longest > long {
-        "ours last longer, most of all in deep water and weak wind: waves shorter than the cut, which are left out, would make \
-        finer and faster flashes"
+        "ours last longer; one reason may be that waves shorter than the cut, which would make finer and faster flashes, are left out"
     } else if shortest < short {
         "ours are shorter"
     } else {
