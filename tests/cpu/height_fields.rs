@@ -396,12 +396,15 @@ fn slopes_that_no_surface_has_are_reported_with_their_share() {
     let share_of = |across: f64, edges: &str, side: u32| {
         let numbers: Vec<f64> = (0..side * side)
             .flat_map(|i| {
-                let wave = (TAU * (2.0 * (f64::from(i % side) + 0.5) / f64::from(side)).cos();
+                let wave = (TAU * 2.0 * (f64::from(i % side) + 0.5) / f64::from(side)).cos();
                 [0.1 * wave, 0.1 * across * wave]
             })
             .collect();
         let field = json!({ "holds": "slopes", "sample_m": 6.4 / f64::from(side), "edges": edges });
-        let resolved = files::scene(with(field), &[npy(&[side as usize, side as usize, 2], &numbers)]);
+        let resolved = files::scene(
+            with(field),
+            &[npy(&[side as usize, side as usize, 2], &numbers)],
+        );
         let all = warnings(&resolved);
         let found = all
             .into_iter()
