@@ -235,7 +235,7 @@ fn noise(side: u64) -> Value {
             state = state
                 .wrapping_mul(6_364_136_223_846_793_005)
                 .wrapping_add(1_442_695_040_888_963_407);
-            ((state >> 40) as f64 / (1 << 24) as f64 - 0.5) * 4e-3
+            ((state >> 40) as f64 / f64::from(1 << 24) - 0.5) * 4e-3
         });
         heights.collect::<Vec<f64>>()
     };
@@ -278,6 +278,10 @@ fn spectrum(fields: &Value) -> Value {
 }
 
 /// The pool under a basin of 3 m × 3 m with these drops.
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "a literal is shorter without a reference"
+)]
 fn basin(time_s: f64, drops: Value) -> Value {
     let waves = json!([{
         "kind": "ripples", "min_m": [-1.5, -1.5], "max_m": [1.5, 1.5], "samples": 128, "drops": drops

@@ -104,7 +104,7 @@ pub fn measure(
     let mut study = SeaStudy {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         moments: settings.moments,
-        seconds: steps(settings, STEP_S) as f64 * f64::from(SERIES) * STEP_S,
+        seconds: f64::from(steps(settings, STEP_S)) * f64::from(SERIES) * STEP_S,
         series: SERIES,
         step_s: STEP_S,
         texels: settings.texels,
