@@ -249,7 +249,9 @@ fn left_out_by_method(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning>
         return all;
     }
     let method = &facts.method;
-    if !method.conserves_energy && method.product == Product::PointIrradiance {
+    // A method that follows rays into a view keeps an account, and the frame reports what it lacks.
+    let keeps_account = method.lands_in_view;
+    if !method.conserves_energy && method.product == Product::PointIrradiance && !keeps_account {
         all.extend(without_account(facts));
     }
     if wet > 0 && method.leaves_out.shadows {

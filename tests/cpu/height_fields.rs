@@ -297,10 +297,10 @@ fn height_at(more: &Value, time_s: f64, sample: usize) -> f64 {
 fn frames_are_exact_at_their_times_and_smooth_between() {
     let close =
         |found: f64, expected: f64| assert!((found - expected).abs() < 1e-13, "{found} {expected}");
-    for frame in 0..7 {
+    for frame in (0..7).map(f64::from) {
         // The time as it is written in a file of frames.
-        let time_s = 2.0 + frame as f64 / 30.0;
-        close(height_at(&json!({}), time_s, 8), at_frame(8, frame as f64));
+        let time_s = 2.0 + frame / 30.0;
+        close(height_at(&json!({}), time_s, 8), at_frame(8, frame));
     }
     // Between two frames that have neighbours, a parabola in time is exact.
     for t in [1.25, 2.5, 4.9] {

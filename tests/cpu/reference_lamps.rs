@@ -94,7 +94,7 @@ fn a_lamp_a_millimetre_above_the_floor_lights_half_of_all_directions() {
 /// The map of a lamp over waves from directions that leave the light evenly, each followed to every place where it goes down through
 /// the water: waves do not shade each other.
 fn from_directions(scene: &ResolvedScene, lamp_m: DVec3, directions: u32, side: usize) -> Vec<f64> {
-    let surface = Surface::of(&scene).unwrap();
+    let surface = Surface::of(scene).unwrap();
     let crest_m = surface.max_height_m();
     let gap_m = |p: DVec3| p.y - surface.at(p.x, p.z).height_m;
     let mut texels = vec![0.0; side * side];

@@ -652,12 +652,17 @@ fn a_seed_keeps_its_sea() {
             ],
         ),
     ] {
+        // Moments of a sea that repeats are rounded to 2⁻²⁸ of its loop; they were not when its values were written down.
+        let (height_off, slope_off) = match fields.get("loop_s") {
+            Some(_) => (1e-8, 1e-8),
+            None => (1e-12, 1e-11),
+        };
         let surface = surface_of(&scene_with(fields, json!({ "time_s": time_s })));
         let found = places.map(|(x, z)| surface.at(x, z));
         for (point, (height_m, slope_x, slope_z)) in found.iter().zip(points) {
             let off = (point.slope - DVec2::new(slope_x, slope_z)).length();
             assert!(
-                (point.height_m - height_m).abs() < 1e-12 && off < 1e-11,
+                (point.height_m - height_m).abs() < height_off && off < slope_off,
                 "{time_s}: {found:?}"
             );
         }

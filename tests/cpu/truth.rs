@@ -437,7 +437,7 @@ fn questions_without_sense_are_errors() {
 
 /// Plain rays, one in each cell of a fine grid, with the functions of `physics` only: the irradiance of a square.
 fn plain_count(scene: &ResolvedScene, center_m: DVec3, normal: DVec3, side_m: f64) -> f64 {
-    let surface = Surface::of(&scene).unwrap();
+    let surface = Surface::of(scene).unwrap();
     let sun = sun(scene, 0);
     let l = direction_to_light(sun.elevation_deg.to_radians(), sun.azimuth_deg.to_radians());
     let (u, v) = normal.any_orthonormal_pair();

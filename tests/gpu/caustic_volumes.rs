@@ -72,11 +72,10 @@ fn difference(found: &[[f64; 3]], plain: &[Lit]) -> (f64, f64) {
     let (mut off, mut sum, mut many) = (0.0, 0.0, 0);
     for (found, plain) in found.iter().zip(plain) {
         let mut is_off = false;
-        for c in 0..3 {
-            let due = plain.irradiance[c];
-            off += (found[c] - due).abs();
+        for (found, due) in found.iter().zip(plain.irradiance) {
+            off += (found - due).abs();
             sum += due;
-            is_off |= (found[c] - due).abs() > 1e-3 * due;
+            is_off |= (found - due).abs() > 1e-3 * due;
         }
         many += u32::from(is_off);
     }

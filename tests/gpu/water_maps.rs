@@ -59,7 +59,7 @@ fn truth(resolved: &ResolvedScene) -> Vec<[f64; 3]> {
         .map(DVec2::from);
     let [width, height] = map.size();
     let step = (max - min) / DVec2::new(f64::from(width), f64::from(height));
-    let surface = Surface::of(&resolved).unwrap();
+    let surface = Surface::of(resolved).unwrap();
     (0..height)
         .flat_map(|j| (0..width).map(move |i| DVec2::new(f64::from(i), f64::from(j))))
         .map(|at| {
@@ -76,7 +76,7 @@ fn values(frame: &Frame) -> Vec<[f64; 3]> {
 
 /// What single precision may lose: a few roundings of the values, and of the places, whose steps grow with the map's half side.
 fn tolerance(resolved: &ResolvedScene, half_m: f64) -> [f64; 2] {
-    let surface = Surface::of(&resolved).unwrap();
+    let surface = Surface::of(resolved).unwrap();
     const ROUNDINGS: f64 = 8.0 * f32::EPSILON as f64;
     let reach_m = half_m + 1.0;
     [

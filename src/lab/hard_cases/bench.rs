@@ -195,7 +195,9 @@ impl<'a> Bench<'a> {
         }
         // Some methods do not conserve energy, and say so; that they say how much was checked above.
         let warnings = &frame.stats.warnings;
-        let conserves = warnings.iter().all(|w| w.code != "method_does_not_conserve");
+        let conserves = warnings
+            .iter()
+            .all(|w| w.code != "method_does_not_conserve");
         for account in frame.stats.energy.iter().filter(|_| conserves) {
             self.closure = self.closure.max(account.closure);
             let is_closed = account.closure <= MOST_CLOSURE;
