@@ -1,8 +1,8 @@
 //! The store of files of numbers.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::sync::Arc;
 
+use super::store::{Full, Store, Stored};
 use crate::config::Limits;
 use crate::fields::{self, Field, FieldError, FieldInfo};
 
@@ -10,14 +10,7 @@ use crate::fields::{self, Field, FieldError, FieldInfo};
 /// that does not fit is refused.
 #[derive(Debug)]
 pub struct FieldStore {
-    budget_bytes: u64,
-    held: RwLock<Held>,
-}
-
-#[derive(Debug, Default)]
-struct Held {
-    fields: BTreeMap<String, Arc<Field>>,
-    bytes: u64,
+    store: Store<Field>,
 }
 
 /// A file in the store.
@@ -29,12 +22,21 @@ pub struct InsertedField {
     pub created: bool,
 }
 
+impl Stored for Field {
+    fn id(&self) -> &str {
+        &self.id
+    }
+
+    fn bytes(&self) -> u64 {
+        self.bytes()
+    }
+}
+
 impl FieldStore {
     /// An empty store; `limits.asset_store_bytes` applies.
     pub fn new(limits: &Limits) -> Self {
         Self {
-            budget_bytes: limits.asset_store_bytes,
-            held: RwLock::default(),
+            store: Store::new(limits.asset_store_bytes),
         }
     }
 
@@ -51,62 +53,38 @@ impl FieldStore {
                 created: false,
             });
         }
-        let field = Arc::new(fields::read(bytes)?);
-        let needed_bytes = field.bytes();
-        let mut held = self.write();
-        // Another thread may have added the same file meanwhile.
-        if let Some(field) = held.fields.get(&field.id) {
-            return Ok(InsertedField {
-                field: Arc::clone(field),
-                created: false,
-            });
-        }
-        if held.bytes.saturating_add(needed_bytes) > self.budget_bytes {
-            return Err(FieldError::StoreFull {
+        let field = fields::read(bytes)?;
+        match self.store.insert(field) {
+            Ok((field, created)) => Ok(InsertedField { field, created }),
+            Err(Full {
                 needed_bytes,
-                used_bytes: held.bytes,
-                budget_bytes: self.budget_bytes,
-            });
+                used_bytes,
+                budget_bytes,
+            }) => Err(FieldError::StoreFull {
+                needed_bytes,
+                used_bytes,
+                budget_bytes,
+            }),
         }
-        held.bytes += needed_bytes;
-        held.fields.insert(field.id.clone(), Arc::clone(&field));
-        Ok(InsertedField {
-            field,
-            created: true,
-        })
     }
 
     /// The file with this id.
     pub fn get(&self, id: &str) -> Option<Arc<Field>> {
-        self.read().fields.get(id).cloned()
+        self.store.get(id)
     }
 
     /// Removes a file; returns whether it was stored. Frames that use it keep it until they are done.
     pub fn remove(&self, id: &str) -> bool {
-        let mut held = self.write();
-        let Some(field) = held.fields.remove(id) else {
-            return false;
-        };
-        held.bytes -= field.bytes();
-        true
+        self.store.remove(id)
     }
 
     /// All files, sorted by id.
     pub fn list(&self) -> Vec<FieldInfo> {
-        self.read().fields.values().map(|f| f.info()).collect()
+        self.store.list(Field::info)
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> u64 {
-        self.read().bytes
-    }
-
-    // No code that holds the lock can panic in the middle of a change, so the data behind a poisoned lock is valid.
-    fn read(&self) -> RwLockReadGuard<'_, Held> {
-        self.held.read().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn write(&self) -> RwLockWriteGuard<'_, Held> {
-        self.held.write().unwrap_or_else(PoisonError::into_inner)
+        self.store.bytes()
     }
 }

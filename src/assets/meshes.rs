@@ -1,8 +1,8 @@
 //! The mesh store.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::sync::Arc;
 
+use super::store::{Full, Store, Stored};
 use crate::config::Limits;
 use crate::mesh::{Mesh, MeshError, MeshInfo, obj};
 use crate::scene::Assets;
@@ -12,13 +12,7 @@ use crate::scene::Assets;
 #[derive(Debug)]
 pub struct MeshStore {
     limits: Limits,
-    held: RwLock<Held>,
-}
-
-#[derive(Debug, Default)]
-struct Held {
-    meshes: BTreeMap<String, Arc<Mesh>>,
-    bytes: u64,
+    store: Store<Mesh>,
 }
 
 /// A mesh in the store.
@@ -28,6 +22,16 @@ pub struct Inserted {
     pub mesh: Arc<Mesh>,
     /// Whether this upload added it.
     pub created: bool,
+}
+
+impl Stored for Mesh {
+    fn id(&self) -> &str {
+        &self.id
+    }
+
+    fn bytes(&self) -> u64 {
+        self.bytes()
+    }
 }
 
 impl Default for MeshStore {
@@ -41,7 +45,7 @@ impl MeshStore {
     pub fn new(limits: &Limits) -> Self {
         Self {
             limits: *limits,
-            held: RwLock::default(),
+            store: Store::new(limits.mesh_store_bytes),
         }
     }
 
@@ -58,63 +62,39 @@ impl MeshStore {
                 created: false,
             });
         }
-        let mesh = Arc::new(obj::read(obj, mtls, &self.limits)?);
-        let needed_bytes = mesh.bytes();
-        let mut held = self.write();
-        // Another thread may have added the same mesh meanwhile.
-        if let Some(mesh) = held.meshes.get(&mesh.id) {
-            return Ok(Inserted {
-                mesh: Arc::clone(mesh),
-                created: false,
-            });
-        }
-        if held.bytes.saturating_add(needed_bytes) > self.limits.mesh_store_bytes {
-            return Err(MeshError::StoreFull {
+        let mesh = obj::read(obj, mtls, &self.limits)?;
+        match self.store.insert(mesh) {
+            Ok((mesh, created)) => Ok(Inserted { mesh, created }),
+            Err(Full {
                 needed_bytes,
-                used_bytes: held.bytes,
-                budget_bytes: self.limits.mesh_store_bytes,
-            });
+                used_bytes,
+                budget_bytes,
+            }) => Err(MeshError::StoreFull {
+                needed_bytes,
+                used_bytes,
+                budget_bytes,
+            }),
         }
-        held.bytes += needed_bytes;
-        held.meshes.insert(mesh.id.clone(), Arc::clone(&mesh));
-        Ok(Inserted {
-            mesh,
-            created: true,
-        })
     }
 
     /// The mesh with this id.
     pub fn get(&self, id: &str) -> Option<Arc<Mesh>> {
-        self.read().meshes.get(id).cloned()
+        self.store.get(id)
     }
 
     /// Removes a mesh; returns whether it was stored. Frames that use it keep it until they are done.
     pub fn remove(&self, id: &str) -> bool {
-        let mut held = self.write();
-        let Some(mesh) = held.meshes.remove(id) else {
-            return false;
-        };
-        held.bytes -= mesh.bytes();
-        true
+        self.store.remove(id)
     }
 
     /// All meshes, sorted by id.
     pub fn list(&self) -> Vec<MeshInfo> {
-        self.read().meshes.values().map(|m| m.info()).collect()
+        self.store.list(Mesh::info)
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> u64 {
-        self.read().bytes
-    }
-
-    // No code that holds the lock can panic in the middle of a change, so the data behind a poisoned lock is valid.
-    fn read(&self) -> RwLockReadGuard<'_, Held> {
-        self.held.read().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn write(&self) -> RwLockWriteGuard<'_, Held> {
-        self.held.write().unwrap_or_else(PoisonError::into_inner)
+        self.store.bytes()
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod fields;
 pub mod meshes;
+mod store;
 
 pub use fields::{FieldStore, InsertedField};
 pub use meshes::{Inserted, MeshStore};

@@ -21,6 +21,8 @@ pub struct MethodFacts {
     /// Whether the landed flux equals the flux that the rays carry. If not, an energy account that does not close is no defect, and the
     /// frame reports the difference.
     pub conserves_energy: bool,
+    /// Whether the flux on its way is counted, term by term. A method that finds light at points has no rays to count.
+    pub keeps_account: bool,
     /// Whether meshes are lit where rays hit them. Otherwise the method places light on meshes itself, and the hits only decide which light
     /// is left for the floor.
     pub lights_meshes_by_hits: bool,
@@ -47,6 +49,7 @@ impl MethodFacts {
             name,
             product,
             conserves_energy: true,
+            keeps_account: product != Product::PointIrradiance,
             lights_meshes_by_hits: true,
             reference_planes: 0,
             skips_empty_planes: false,

@@ -10,7 +10,7 @@ use super::height_fields;
 use super::source::Source;
 use super::unfollowed;
 use super::window::Rect;
-use super::{BeamSet, Product, SceneFacts};
+use super::{BeamSet, SceneFacts};
 use crate::mesh::{Mesh, mtl, repair};
 use crate::scene::{ResolvedScene, Scene, Wave};
 use crate::stats::Warning;
@@ -249,9 +249,7 @@ fn left_out_by_method(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning>
         return all;
     }
     let method = &facts.method;
-    // A method that follows rays into a view keeps an account, and the frame reports what it lacks.
-    let keeps_account = method.lands_in_view;
-    if !method.conserves_energy && method.product == Product::PointIrradiance && !keeps_account {
+    if !method.keeps_account {
         all.extend(without_account(facts));
     }
     if wet > 0 && method.leaves_out.shadows {

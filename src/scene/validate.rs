@@ -91,7 +91,7 @@ fn water(findings: &mut Findings, water: &Water, limits: &Limits) {
             "/water/waves",
             format!("all drops together move {swings} waves of their basins"),
             format!(
-                "at most {} (samples² × drops, as of one basin of 1024 samples with 256 drops)",
+                "at most {} (samples² × drops, sixteen times that where walls absorb; as of one reflecting basin of 1024 samples with 256 drops)",
                 ranges::MAX_SWINGS
             ),
         );

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::field_support::{self as files, npy, sampled};
 
 /// A scene with a height field with these fields.
-fn with(field: Value) -> Value {
+pub(crate) fn with(field: Value) -> Value {
     json!({
         "water": { "waves": [field], "ior": 1.333 },
         "floor": { "depth_m": 1, "size_m": [4, 4] },
@@ -26,13 +26,13 @@ fn surface(field: Value, file: Vec<u8>) -> Surface {
 }
 
 /// The issues of a scene that is refused.
-fn issues(field: Value, files: &[Vec<u8>]) -> Vec<Issue> {
+pub(crate) fn issues(field: Value, files: &[Vec<u8>]) -> Vec<Issue> {
     files::try_scene(with(field), files)
         .expect_err("refused")
         .issues
 }
 
-fn refused(field: Value, file: Vec<u8>, pointer: &str, words: &str) {
+pub(crate) fn refused(field: Value, file: Vec<u8>, pointer: &str, words: &str) {
     let found = issues(field, &[file]);
     let is_there = found.iter().any(|issue| {
         issue.pointer == format!("/water/waves/0/{pointer}")
@@ -42,7 +42,7 @@ fn refused(field: Value, file: Vec<u8>, pointer: &str, words: &str) {
     assert!(is_there, "{pointer} {words}: {found:?}");
 }
 
-fn warnings(resolved: &ResolvedScene) -> Vec<Warning> {
+pub(crate) fn warnings(resolved: &ResolvedScene) -> Vec<Warning> {
     let facts = caustica::methods::facts_with_warnings(resolved).unwrap();
     facts.warnings
 }
@@ -525,198 +525,22 @@ fn coarse_numbers_are_warned_of() {
     assert!(coarse(0.1 * 257.0, 255.0));
 }
 
+/// Absolute heights: water at rest is what a bounded field has at its edges, so that a bump stays where it is.
 #[test]
-fn broken_fields_are_refused_where_they_are_wrong() {
-    let good = || npy(&[8, 8], &[0.0; 64]);
-    let field = |more: Value| {
-        let mut field = json!({ "sample_m": 0.1 });
-        for (name, value) in more.as_object().unwrap() {
-            field[name] = value.clone();
-        }
-        field
+fn the_water_at_rest_of_a_bounded_field_is_that_of_its_edges() {
+    let bump = |i: usize| {
+        let (x, z) = ((i % 41) as f64 - 20.0, (i / 41) as f64 - 20.0);
+        7.0 + 0.2 * (-(x * x + z * z) / 18.0).exp()
     };
-    let rgb = || files::png([8, 8], png::ColorType::Rgb, 16, &[7; 192]);
-    let exr = || files::exr(8, 8, &[("u", vec![0.0; 64]), ("v", vec![0.0; 64])]);
-    let mut nan = vec![0.0; 64];
-    nan[19] = f64::NAN;
-    refused(
-        field(json!({})),
-        npy(&[8, 8], &nan),
-        "frames/0",
-        "frame 0, row 2, column 3",
-    );
-    refused(
-        field(json!({})),
-        npy(&[8, 8, 2], &[0.0; 128]),
-        "frames/0",
-        "2 channels",
-    );
-    refused(
-        field(json!({})),
-        npy(&[2, 8, 8, 2], &[0.0; 256]),
-        "frames/0",
-        "2 channels",
-    );
-    refused(
-        field(json!({})),
-        npy(&[1, 1], &[0.0]),
-        "frames/0",
-        "too few samples",
-    );
-    refused(
-        field(json!({})),
-        npy(&[3, 8], &[0.0; 24]),
-        "frames/0",
-        "too few samples along z: 3",
-    );
-    refused(
-        field(json!({ "range_m": [0, 1] })),
-        rgb(),
-        "frames/0",
-        "3 channels",
-    );
-    refused(
-        field(json!({ "channel": "B", "range_m": [0, 1] })),
-        exr(),
-        "channel",
-        "no channel `B`",
-    );
-    refused(field(json!({})), exr(), "frames/0", "2 channels");
-    refused(
-        field(json!({ "holds": "slopes" })),
-        exr(),
-        "frames/0",
-        "not clear",
-    );
-    refused(
-        field(json!({ "holds": "slopes" })),
-        good(),
-        "frames/0",
-        "not clear",
-    );
-    refused(
-        field(json!({})),
-        npy(&[3, 8, 8], &[0.0; 192]),
-        "frames_per_s",
-        "3 frames",
-    );
-    refused(
-        field(json!({})),
-        files::png([8, 8], png::ColorType::Grayscale, 16, &[7; 64]),
-        "range_m",
-        "not in the file",
-    );
-    refused(
-        field(json!({ "range_m": [0, 1] })),
-        good(),
-        "range_m",
-        "16 bits",
-    );
-    refused(
-        field(json!({ "scale_m": 1e5 })),
-        npy(&[4, 4], &[0.0, 1.0].repeat(8)),
-        "frames/0",
-        "reach from 0 to 100000 m",
-    );
-    refused(
-        field(json!({ "rest_m": 0 })),
-        npy(&[4, 4], &[1234.0; 16]),
-        "frames/0",
-        "at rest at 0 m",
-    );
-    refused(
-        field(json!({ "holds": "slopes" })),
-        npy(&[4, 4, 2], &[101.0; 32]),
-        "frames/0",
-        "slopes reach from 101",
-    );
-    refused(
-        field(json!({ "rim_m": 0.5 })),
-        good(),
-        "rim_m",
-        "wider than half",
-    );
-    refused(
-        field(json!({ "sample_m": 1e-5 })),
-        good(),
-        "sample_m",
-        "long along x",
-    );
-    let two = issues(
-        field(json!({ "frames_per_s": 1 })),
-        &[good(), npy(&[8, 9], &[0.0; 72])],
-    );
-    assert_eq!(two[0].pointer, "/water/waves/0/frames/1");
-    assert!(
-        two[0]
-            .detail
-            .contains("9 columns and 8 rows, the first one 8 and 8"),
-        "{two:?}"
-    );
-
-    let missing = files::try_scene(with(field(json!({}))), &[]).unwrap_err();
-    assert!(missing.issues[0].detail.contains("no frame"), "{missing}");
-    let mut scene = with(field(
-        json!({ "kind": "height_field", "frames": ["blake3:ff"] }),
-    ));
-    let resolve = |scene: &Value| {
-        let scene = caustica::scene::Scene::from_value(scene.clone()).unwrap();
-        let nothing = |_: &str| None;
-        caustica::methods::resolve(scene, &caustica::config::Limits::default(), nothing)
-            .unwrap_err()
-    };
-    let unknown = resolve(&scene);
-    assert_eq!(unknown.kind(), IssueKind::UnknownAsset);
-    assert_eq!(unknown.issues[0].pointer, "/water/waves/0/frames/0");
-    scene["water"]["ior"] = json!(-1);
-    assert_eq!(resolve(&scene).kind(), IssueKind::Invalid);
-}
-
-#[test]
-fn fields_that_contradict_each_other_or_are_out_of_range_are_refused() {
-    let good = || npy(&[8, 8], &[0.0; 64]);
-    for (more, pointer, words) in [
-        (
-            json!({ "channels": ["x", "z"] }),
-            "channels",
-            "no `channels`",
-        ),
-        (json!({ "slope_scale": 2 }), "slope_scale", "holds heights"),
-        (
-            json!({ "holds": "slopes", "rest_m": 0 }),
-            "rest_m",
-            "holds slopes",
-        ),
-        (
-            json!({ "scale_m": 1, "range_m": [0, 1] }),
-            "scale_m",
-            "scaled twice",
-        ),
-        (json!({ "scale_m": 0 }), "scale_m", "flat"),
-        (json!({ "range_m": [1, 1] }), "range_m", "empty"),
-        (
-            json!({ "edges": "periodic", "rim_m": 0.3 }),
-            "rim_m",
-            "no rim",
-        ),
-        (json!({ "rim_m": 0 }), "rim_m", "0 m is a step"),
-        (json!({ "rim_m": 0.19 }), "rim_m", "a step"),
-        (json!({ "sample_m": 0 }), "sample_m", "out of range"),
-        (
-            json!({ "sample_m": [0.1, -1] }),
-            "sample_m/1",
-            "out of range",
-        ),
-        (json!({ "frames_per_s": 0 }), "frames_per_s", "out of range"),
-        (json!({ "start_s": 1e13 }), "start_s", "out of range"),
-        (json!({ "min_m": [0, 1e9] }), "min_m/1", "out of range"),
-    ] {
-        let mut field = json!({ "sample_m": 0.1 });
-        for (name, value) in more.as_object().unwrap() {
-            field[name] = value.clone();
-        }
-        refused(field, good(), pointer, words);
-    }
+    let numbers: Vec<f64> = (0..41 * 41).map(bump).collect();
+    let surface = surface(json!({ "sample_m": 0.1 }), npy(&[41, 41], &numbers));
+    assert!((surface.at(0.0, 0.0).height_m - 0.2).abs() < 1e-8);
+    assert!(surface.at(1.99, 1.99).height_m.abs() < 1e-8);
+    // A periodic one has no edges: the mean is.
+    let field = json!({ "sample_m": 0.1, "edges": "periodic" });
+    let mean = numbers.iter().sum::<f64>() / 1681.0;
+    let found = self::surface(field, npy(&[41, 41], &numbers)).at(0.0, 0.0);
+    assert!((found.height_m - (7.2 - mean)).abs() < 1e-12);
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod accuracy_estimate;
 mod accuracy_metrics;
 mod accuracy_plot;
 mod accuracy_report;
+mod broken_fields;
 mod choppy_sea;
 mod cli;
 mod cli_frames;

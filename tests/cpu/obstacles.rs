@@ -217,7 +217,7 @@ fn absorbing_walls_return_less_than_a_hundredth_of_the_energy() {
                 "{max_m:?} {position_m:?} {samples} {time_s}: {share}"
             );
         }
-        // Nothing grows in the layer: at last there is the tail that waves on a plane leave behind, H R²/(c t)².
+        // Nothing grows in the layer: at last there is no more than the tail that waves on a plane leave behind, H R²/(c t)².
         let tail = (radius_m / (speed_m_per_s() * 8.0)).powi(2);
         let late = rms(&sampled(&basin.at(8.0), [-0.5; 2], max_m));
         assert!(late < 1.3 * tail, "{late} {tail}");
@@ -331,6 +331,60 @@ fn waves_are_reflected_by_a_block_as_by_a_wall() {
             found.max_slope()
         );
     }
+}
+
+/// A periodic basin has no sides: a post over its corner is the same as one in its middle, half a basin further.
+#[test]
+fn an_obstacle_over_the_side_of_a_periodic_basin_goes_on_at_the_other() {
+    let with_post_at = |post_m: f64, drop_m: [f64; 2]| {
+        Basin::new(
+            json!({ "samples": 64, "walls": "periodic", "drops": [
+                { "position_m": drop_m, "radius_m": 0.06, "height_m": 1.0 }] }),
+            &[(block([0.16, 1.0, 0.12]), [post_m, 0.0, post_m])],
+        )
+    };
+    let (corner, middle) = (
+        with_post_at(0.5, [0.1, 0.2]),
+        with_post_at(0.0, [-0.4, -0.3]),
+    );
+    for time_s in [0.0, 0.3, 1.1] {
+        let (corner, middle) = (corner.at(time_s), middle.at(time_s));
+        assert!(middle.max_slope() > 0.01);
+        for i in 0..400 {
+            let (x, z) = (f64::from(i) * 0.618_034, f64::from(i) * 0.754_878);
+            let apart = corner.at(x, z).height_m - middle.at(x - 0.5, z - 0.5).height_m;
+            assert!(apart.abs() < 1e-12, "{time_s} {x} {z} {apart}");
+        }
+    }
+}
+
+/// A mesh that crosses the lines of samples more often than is held at once, all within one cell: it is a wall like a single sheet.
+#[test]
+fn a_wall_of_many_fins_is_a_wall() {
+    let basin = |fins: u32| {
+        let mut text = String::new();
+        for fin in 0..fins {
+            let x = -0.2 + 5e-4 * f64::from(fin) / 20_001.0;
+            text += &format!("v {x} -1 -0.45\nv {x} 1 -0.45\nv {x} -1 0.45\nv {x} 1 0.45\n");
+            let first = 4 * fin + 1;
+            text += &format!("f {} {} {}\n", first, first + 1, first + 2);
+            text += &format!("f {} {} {}\n", first + 1, first + 2, first + 3);
+        }
+        let mesh = obj::read(text.as_bytes(), &[], &Limits::default()).unwrap();
+        Basin::new(
+            json!({ "samples": 256, "drops": [
+                { "position_m": [0.0, 0.1], "radius_m": 0.05, "height_m": 1.0 }] }),
+            &[(Arc::new(mesh), [0.0; 3])],
+        )
+    };
+    let (one, many) = (basin(1).at(0.3), basin(20_001).at(0.3));
+    assert!(one == many);
+    let without = Basin::stepped(json!({ "samples": 256, "drops": [
+        { "position_m": [0.0, 0.1], "radius_m": 0.05, "height_m": 1.0 }] }));
+    assert!(
+        difference(&one, &without.at(0.3)) > 1e-3,
+        "it is in the way"
+    );
 }
 
 /// Heights behind a wide wall, as a share of those without it; the wall may have no thickness, stand askew, or be a closed block.

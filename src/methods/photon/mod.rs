@@ -172,6 +172,8 @@ pub static METHOD: Method = Method {
     dials_can_be_chosen: false,
     facts: |quality| MethodFacts {
         conserves_energy: false,
+        // It follows photons, and counts them.
+        keeps_account: true,
         lands_in_view: true,
         own_cells: Some(OwnCells {
             cells: PHOTONS_PER_SIDE.integer(quality),

@@ -11,7 +11,7 @@ use super::scene::{
 };
 use super::study::{Check, Checks, Estimate, FlashFigures, PlaceResult, SeaStudy, SlopeResult};
 use super::write::{CV, FLASHES, PEAKS};
-use crate::lab::study::words::{percent, significant};
+use crate::lab::study::words::significant;
 
 /// The page; `folder` is the folder of the plots relative to the page, with `/` at its end, or empty.
 pub fn to_markdown(study: &SeaStudy, folder: &str) -> String {
@@ -37,7 +37,7 @@ fn head(text: &mut String, s: &SeaStudy) {
         The sea is the sum of two Elfouhaily spectra with random phases: waves of {SPLIT_M} … {LONG_TILE_M} m on a tile of {LONG_TILE_M} m, \
         and of {SHORTEST_M} … {SPLIT_M} m on a tile of {SHORT_TILE_M} m. The water is clear, the sun is {SUN_ELEVATION_DEG}° high, and the \
         wind blows at {WIND_DIRECTION_DEG}° to the sun's azimuth. Detectors are the texels of irradiance maps: {}² for each of {} maps, \
-        each map of a sea of its own. Time series are {} s long in all, from {} seas, with a frame every {} ms and {}² detectors. \
+        each map of a sea of its own; all depths and winds share their seeds, so their figures are not independent. Time series are {} s long in all, from {} seas, with a frame every {} ms and {}² detectors. \
         Rendered on {} ({}) with ten water cells per shortest wave, where {} along each side of the light's window are enough for that.\n\n\
         Scenes have suns without a size. The sun's disc (radius 16 minutes of arc) is put in afterwards: each map is averaged over \
         the disc's image under flat water, which is 7 mm wide per metre of depth. Where a table says *point sun*, it is not. After \
@@ -258,8 +258,8 @@ fn account(text: &mut String, s: &SeaStudy) {
     let _ = write!(
         text,
         "\n## Account\n\nMean irradiance over that under flat water. Waves move light about and change how much of it enters only a \
-        little, so this should be near 1. The energy accounts of all frames close to {} or better.\n",
-        percent(s.closure)
+        little, so this should be near 1. The energy accounts of all frames close to {:.0e} or better.\n",
+        s.closure
     );
     table(text, s, &|p| with_error(p.sun.mean));
     text.push_str(
