@@ -125,12 +125,12 @@ const KINDS: &[Kind] = &[
     },
     Kind {
         name: "ripples: obstacle",
-        about: "Shallow water with a post in it, which reflects the rings (`scenes/rain_pool_post.json`). It moves in steps of time.",
+        about: "Shallow water with a post in it, which reflects the rings (`scenes/rain_pool_post.json`, 0.4 m deep). It moves in steps of time. In the map the post and its shadow are black.",
         waves: || Ok(Water::Scene(Box::new(scenes::load("rain_pool_post")?))),
     },
     Kind {
         name: "height_field",
-        about: "Heights that a user computed elsewhere, read from a file (`scenes/own_water.json`).",
+        about: "Heights that a user computed elsewhere, read from a file (`scenes/own_water.json`, 1.5 m deep), and a light wind.",
         waves: || Ok(Water::Scene(Box::new(scenes::load("own_water")?))),
     },
 ];
@@ -218,10 +218,11 @@ pub(crate) fn write() -> Result<(), Box<dyn Error>> {
     let page = format!(
         "# Water\n\n\
          Each row of pictures shows a square of {:.0} m × {:.0} m: the height of the water (black −, white +), the magnitude of its slope \
-         (white is the largest), and the irradiance of a floor 2 m below under a sun of 70°, without absorption (white is three times the mean). Written by `make docs`.\n\n\
+         (white is the largest), and the irradiance of the floor, 2 m below unless said otherwise, under a sun of 70°, without absorption (white is three times the mean). Written by `make docs`.\n\n\
          Times are medians of {MOMENTS} moments on {} with {} CPU cores: `surface` is what one more moment of the water costs on the CPU, \
          `frame` the whole frame with a map of {SIDE} × {SIDE} texels and 256 × 256 water cells, `surface` included. The error is the \
-         relative L1 error of this map against the float64 reference.\n\n\
+         relative L1 error of this map against the float64 reference: seas have waves down to 10 cm here, \
+         for which 256 cells are few; more cells make it smaller ([accuracy](accuracy.md)).\n\n\
          | waves | surface, ms | frame, ms | error |\n|---|--:|--:|--:|\n{rows}\n{panels}",
         2.0 * HALF_M,
         2.0 * HALF_M,
