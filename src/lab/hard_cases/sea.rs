@@ -98,8 +98,8 @@ pub(super) const CASES: &[Case] = &[
         REFERENCE,
         0.01,
         |b| {
-            let waves = spectrum(&json!({ "wind_speed_m_s": 20, "tile_m": 1e4, "samples": 512 }));
-            reference_error(b, over(200.0, 100.0, waves))
+            let waves = spectrum(&json!({ "wind_speed_m_s": 20, "fetch_m": 1e6, "tile_m": 1e4, "samples": 512 }));
+            reference_error(b, over(1000.0, 500.0, waves))
         },
     ),
     Sea.case(
