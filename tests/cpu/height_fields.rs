@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use caustica::physics::fresnel::fresnel_transmittance;
-use caustica::scene::{Issue, IssueKind, ResolvedScene};
+use caustica::scene::{Issue, ResolvedScene};
 use caustica::stats::Warning;
 use caustica::waves::{ROW_POINTS, RowPoints, Surface};
 use glam::DVec2;
