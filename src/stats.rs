@@ -269,7 +269,7 @@ pub struct Warning {
 impl Warning {
     /// Codes of warnings without a flux: either no light is lost (`sums_done_again`), or they concern dials, pixels, layers,
     /// values of a file, the shape of the water or what surfaces reflect, not light on its path. In a frame, all other warnings state the flux concerned.
-    pub const WITHOUT_FLUX: [&'static str; 22] = [
+    pub const WITHOUT_FLUX: [&'static str; 23] = [
         "calibrated_elsewhere",
         "half_clamped",
         "half_flushed",
@@ -284,6 +284,7 @@ impl Warning {
         "png_clipped",
         "png_layers_left_out",
         "png_negative",
+        "rays_cut_off",
         "sea_without_waves",
         "setting_left_out",
         "slopes_are_no_gradient",

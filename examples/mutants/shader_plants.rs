@@ -287,8 +287,8 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     ShaderPlant {
         family: "camera",
         file: "stages/camera_hits.wgsl",
-        from: "(1.0 - reflectance) / (view.ior * view.ior)",
-        to: "(1.0 - reflectance) / view.ior",
+        from: "(1.0 - reflectance) / (ior * ior)",
+        to: "(1.0 - reflectance) / ior",
         red: Red::Only(&[
             "a_micrometre_over_the_surface",
             "on_the_surface",
@@ -304,8 +304,8 @@ pub(crate) const ALL: &[ShaderPlant] = &[
     ShaderPlant {
         family: "camera",
         file: "stages/camera_hits.wgsl",
-        from: "if over_water(ray.origin) >= 0.0 {",
-        to: "if over_water(ray.origin) >= -2e-5 {",
+        from: "var in_air = is_over_water(ray.origin, 0.0);",
+        to: "var in_air = over_water(ray.origin) >= -2e-5;",
         red: Red::Only(&["a_micrometre_under_the_surface", "on_a_wave"]),
         what: "a camera just under the water is treated as above it",
     },

@@ -27,15 +27,22 @@ struct View {
     sky_transmittance: f32,
     sky_path_factor: f32,
     layers: u32,          // receivers of an object: its surfaces along the light, nearest first
-    sample_index: u32,    // number of samples that the picture already holds
+    sample_index: u32,    // number of samples and legs that the picture already holds
+    leg: u32,             // the way that rays take where they split at the water
+    splits: u32,          // how often a ray splits
+    bounces: u32,         // how often a ray may meet the water
+    start_m: f32,         // way from the eye to where the rays of a perspective camera start: the radius of its dome
     pad: u32,
     sample_offset: vec2f, // offset of the ray from the pixel's centre, pixels
 }
 
 @group(0) @binding(0) var<uniform> view: View;
 
-// Added to a pixel's notes by a sample whose march along the water ran out of steps; a sample that sees the floor outside its map adds 1.
-const MARCH_UNFINISHED: f32 = 128.0;
+// Notes of a pixel, a set of bits held as a number: that it sees the floor outside its map, that a march along the water ran out of steps,
+// and that a ray met the water too often.
+const OUTSIDE_MAP: u32 = 1u;
+const MARCH_UNFINISHED: u32 = 2u;
+const CUT_OFF: u32 = 4u;
 
 // Index of the invocation's pixel within the band, or the pixel count where there is none.
 fn band_pixel(id: vec3u) -> u32 {

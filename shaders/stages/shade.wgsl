@@ -6,7 +6,7 @@
 @group(0) @binding(18) var<storage, read> visible_albedo: array<vec4f>;
 @group(0) @binding(19) var<storage, read> visible_transport: array<vec4f>;
 @group(0) @binding(20) var<storage, read> point_irradiance: array<vec4f>;
-@group(0) @binding(22) var<storage, read_write> radiance: array<vec4f>; // sums over samples: W/(m² sr), notes
+@group(0) @binding(22) var<storage, read_write> radiance: array<vec4f>; // sums over samples and legs: W/(m² sr), notes
 
 // Whether the water absorbs or scatters any light; if false no exponential is computed.
 override ATTENUATES: bool = true;
@@ -30,5 +30,6 @@ fn shade_main(@builtin(global_invocation_id) id: vec3u) {
     }
     var held = vec4f(0.0);
     if view.sample_index > 0u { held = radiance[index]; }
-    radiance[index] = held + vec4f(sum, point_irradiance[index].w + transport.w);
+    let outside = select(0u, OUTSIDE_MAP, point_irradiance[index].w > 0.0);
+    radiance[index] = vec4f(held.xyz + sum, f32(u32(held.w) | u32(transport.w) | outside));
 }

@@ -7,6 +7,7 @@
 //!   the receiver of a map;
 //! - `placement`: objects and the boxes of their level maps; `detail`: texels of those maps, by the object's size in the picture;
 //!   `source`: where light comes from; `window`, `lamp_window`: the water through which light reaches the receivers;
+//! - `legs`: how camera rays split at the water;
 //! - `warnings`: what is left out or sub-sampled; `height_fields`: the same of water that users bring; `unfollowed`, `blocked`: how much
 //!   light that concerns;
 //! - `moment`: which facts change with time.
@@ -15,6 +16,7 @@ mod blocked;
 mod detail;
 mod height_fields;
 mod lamp_window;
+mod legs;
 pub mod lights;
 pub mod method;
 mod moment;
@@ -29,6 +31,7 @@ pub mod window;
 
 use glam::{DVec2, DVec3};
 
+pub use self::legs::Legs;
 pub use self::lights::{BeamSet, LightsFacts, LitLight, MOST_LIGHTS, SkyFacts};
 pub use self::method::{MethodFacts, Product};
 pub use self::output::{CameraFacts, OutputFacts, WaterMapFacts};

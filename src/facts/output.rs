@@ -76,6 +76,8 @@ pub struct CameraFacts {
     pub up: DVec3,
     /// Parallel rays.
     pub orthographic: bool,
+    /// Way from the eye to where rays start, m; 0 for parallel rays.
+    pub start_m: f64,
     /// Picture width, pixels.
     pub width: u32,
     /// Picture height, pixels.
@@ -220,6 +222,10 @@ fn camera_facts(camera: &Camera, origin_m: DVec3, width: u32, height: u32) -> Ca
         right: right * half_width,
         up: up * half_height,
         orthographic: matches!(lens, Lens::Orthographic { .. }),
+        start_m: match camera {
+            Camera::Perspective(camera) => camera.dome_radius_m,
+            Camera::Orthographic(_) => 0.0,
+        },
         width,
         height,
     }

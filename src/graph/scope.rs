@@ -71,8 +71,10 @@ pub struct BandRun {
     pub rows: u32,
     /// Offset of the rays from the pixel's centre, pixels.
     pub offset: [f64; 2],
-    /// Number of samples that the picture already holds.
+    /// Number of samples and legs that the picture already holds.
     pub sample_index: u32,
+    /// The way that rays take where they split: a bit for each time.
+    pub leg: u32,
 }
 
 /// One run of a pass.

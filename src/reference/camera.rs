@@ -4,11 +4,14 @@ use glam::{DVec2, DVec3};
 
 use super::ReferenceError;
 use super::place::Place;
+use crate::physics::fresnel::fresnel_reflectance;
 use crate::physics::refraction::{normal_from_slope, reflect_direction, refract_direction};
 use crate::scene::{Camera, DEFAULT_FIELD_OF_VIEW_DEG, Output, ResolvedScene};
 
 /// Above the water by more than this counts as dry, m: rounding of a floor that lies in the water's plane.
 const DRY_M: f64 = 1e-9;
+/// Distance from the water at which a ray begins that leaves it, m.
+const OFF_M: f64 = 1e-9;
 /// Smallest and largest side of a pixel's footprint, m.
 const SIDES_M: (f64, f64) = (1e-4, 1.0);
 
@@ -25,19 +28,37 @@ pub(super) struct ViewPoint {
     pub(super) dry: bool,
     /// Side of the square that the pixel covers there, m.
     pub(super) side_m: f64,
+    /// Diffuse reflectance.
+    pub(super) albedo: [f64; 3],
 }
 
-/// How the camera ray of a pixel reaches its point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Route {
-    /// Without crossing the surface.
-    Direct,
-    /// From the air down into the water.
-    Refracted,
-    /// From the water up into the air.
-    Left,
-    /// Reflected at the surface from below.
+/// A surface on a ray.
+struct Surfaced {
+    distance_m: f64,
+    position_m: DVec3,
+    normal: DVec3,
+    object: Option<usize>,
+    albedo: [f64; 3],
+}
+
+/// What a ray does where it meets the water.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    /// It is refracted into the other medium.
+    Through,
+    /// It is reflected.
     Mirrored,
+}
+
+/// One way of a camera ray, and where it ends.
+#[derive(Clone, Debug)]
+pub(super) struct Leg {
+    /// Factor on the radiance at its end that the water's surface makes: Fresnel's shares, and n² for each change of medium.
+    pub(super) weight: f64,
+    /// Length of its parts under water, m.
+    pub(super) wet_m: f64,
+    /// The point; `None`: the sky.
+    pub(super) end: Option<ViewPoint>,
 }
 
 /// A ray.
@@ -64,6 +85,8 @@ pub(super) struct Picture {
     up: DVec3,
     /// Whether all rays are parallel.
     parallel: bool,
+    /// Way from the eye to where rays start, m.
+    start_m: f64,
     /// Width and height, pixels.
     pixels: DVec2,
 }
@@ -83,6 +106,10 @@ impl Picture {
         let square =
             |half_height: f64| DVec2::new(half_height * (pixels.x / pixels.y), half_height);
         let mut axis_at = DVec2::ZERO;
+        let start_m = match camera {
+            Camera::Perspective(c) => c.dome_radius_m,
+            Camera::Orthographic(_) => 0.0,
+        };
         let (half, parallel) = match camera {
             Camera::Perspective(c) => match (c.intrinsics, c.vertical_fov_deg) {
                 (Some(lens), _) => {
@@ -105,6 +132,7 @@ impl Picture {
             right: right * half.x,
             up: right.cross(forward) * half.y,
             parallel,
+            start_m,
             pixels,
         })
     }
@@ -137,34 +165,100 @@ impl<'a> Viewer<'a> {
     }
 
     /// What the middle of a pixel shows; pixels are numbered from the upper left. `None`: no surface.
+    ///
+    /// Where a ray from below shows an object in the air, that is the point, not the mirror image of what is under water.
     pub(super) fn point(&mut self, pixel: [u32; 2]) -> Option<ViewPoint> {
-        let at = DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
+        let at = middle_of(pixel);
         let ray = self.pixel_ray(at);
         let above = self.place.over_water_m(ray.from_m) >= 0.0;
-        let until_m = self
-            .place
-            .meet_water(ray.from_m, ray.direction, if above { 1.0 } else { -1.0 })
-            .unwrap_or(f64::MAX);
-        if let Some(point) = self.first_surface(ray, until_m, true) {
-            return Some(self.finish(point, at, Route::Direct));
+        let until_m = self.meet_water(ray, above).unwrap_or(f64::MAX);
+        if let Some(found) = self.first_surface(ray, until_m, true) {
+            return Some(self.finish(&found, at, &[]));
         }
         if until_m == f64::MAX {
             return None;
         }
-        let routes: &[Route] = if above {
-            &[Route::Refracted]
+        let turns: &[Turn] = if above {
+            &[Turn::Through]
         } else {
-            // An object in the air has precedence over the mirror image of one in the water.
-            &[Route::Left, Route::Mirrored]
+            &[Turn::Through, Turn::Mirrored]
         };
-        for &route in routes {
-            if let Some(ray) = self.last_leg(at, route)
-                && let Some(point) = self.first_surface(ray, f64::MAX, route != Route::Left)
+        for &turn in turns {
+            let in_air = !above && turn == Turn::Through;
+            if let Some((ray, _)) = self.turned(at, &[turn])
+                && let Some(found) = self.first_surface(ray, f64::MAX, !in_air)
             {
-                return Some(self.finish(point, at, route));
+                return Some(self.finish(&found, at, &[turn]));
             }
         }
         None
+    }
+
+    /// All ways of the ray through the middle of a pixel that meet the water at most `bounces` times. Beyond, a ray in the air ends at the
+    /// water and shows the sky, and one in the water goes straight on.
+    pub(super) fn legs(&mut self, pixel: [u32; 2], bounces: u32) -> Vec<Leg> {
+        let at = middle_of(pixel);
+        let ray = self.pixel_ray(at);
+        let above = self.place.over_water_m(ray.from_m) >= 0.0;
+        let mut all = Vec::new();
+        let start = Way {
+            turns: Vec::new(),
+            ray,
+            above,
+            weight: 1.0,
+            wet_m: 0.0,
+        };
+        self.follow(at, start, bounces, &mut all);
+        all
+    }
+
+    /// Adds the ways that continue `way`.
+    fn follow(&mut self, at: DVec2, way: Way, bounces: u32, all: &mut Vec<Leg>) {
+        let may_turn = (way.turns.len() as u32) < bounces;
+        let meets = self.meet_water(way.ray, way.above);
+        let until_m = match meets {
+            Some(t) if way.above || may_turn => t,
+            _ => f64::MAX,
+        };
+        let wet = |length_m: f64| way.wet_m + if way.above { 0.0 } else { length_m };
+        if let Some(found) = self.first_surface(way.ray, until_m, true) {
+            all.push(Leg {
+                weight: way.weight,
+                wet_m: wet(found.distance_m),
+                end: Some(self.finish(&found, at, &way.turns)),
+            });
+            return;
+        }
+        if !may_turn || meets.is_none() {
+            if way.above {
+                all.push(Leg {
+                    weight: way.weight,
+                    wet_m: way.wet_m,
+                    end: None,
+                });
+            }
+            return;
+        }
+        for turn in [Turn::Through, Turn::Mirrored] {
+            let turns = [way.turns.as_slice(), &[turn]].concat();
+            if let Some((ray, share)) = self.turned(at, &turns)
+                && share > 0.0
+            {
+                let next = Way {
+                    turns,
+                    ray,
+                    above: way.above != (turn == Turn::Through),
+                    weight: way.weight * share,
+                    wet_m: wet(until_m),
+                };
+                self.follow(at, next, bounces, all);
+            }
+        }
+    }
+
+    fn meet_water(&self, ray: Ray, above: bool) -> Option<f64> {
+        let side = if above { 1.0 } else { -1.0 };
+        self.place.meet_water(ray.from_m, ray.direction, side)
     }
 
     /// The ray through `at`, in pixels from the upper left corner.
@@ -179,40 +273,52 @@ impl<'a> Viewer<'a> {
                 direction: picture.forward,
             }
         } else {
+            let direction = (picture.forward + offset).normalize();
             Ray {
-                from_m: self.eye_m,
-                direction: (picture.forward + offset).normalize(),
+                from_m: self.eye_m + direction * picture.start_m,
+                direction,
             }
         }
     }
 
-    /// The last leg of the camera ray through `at`.
-    fn last_leg(&self, at: DVec2, route: Route) -> Option<Ray> {
-        let ray = self.pixel_ray(at);
-        if route == Route::Direct {
-            return Some(ray);
+    /// The ray through `at` after these turns at the water, and the factor of the last of them on radiance.
+    fn turned(&self, at: DVec2, turns: &[Turn]) -> Option<(Ray, f64)> {
+        let mut ray = self.pixel_ray(at);
+        let mut above = self.place.over_water_m(ray.from_m) >= 0.0;
+        let mut share = 1.0;
+        for &turn in turns {
+            let t = self.meet_water(ray, above)?;
+            let from_m = ray.from_m + ray.direction * t;
+            let slope = self.place.surface.at(from_m.x, from_m.z).slope;
+            let upward = normal_from_slope(slope.x, slope.y);
+            let (normal, ior) = if above {
+                (upward, self.place.ior)
+            } else {
+                (-upward, 1.0 / self.place.ior)
+            };
+            let reflectance = fresnel_reflectance(-ray.direction.dot(normal), ior);
+            // The next part begins on its own side, so that it does not meet the water where it leaves it.
+            let (direction, side) = match turn {
+                Turn::Through => {
+                    above = !above;
+                    share = (1.0 - reflectance) / (ior * ior);
+                    (refract_direction(ray.direction, normal, ior)?, -1.0)
+                }
+                Turn::Mirrored => {
+                    share = reflectance;
+                    (reflect_direction(ray.direction, normal), 1.0)
+                }
+            };
+            ray = Ray {
+                from_m: from_m + normal * (side * OFF_M),
+                direction,
+            };
         }
-        let side = if route == Route::Refracted { 1.0 } else { -1.0 };
-        let t = self.place.meet_water(ray.from_m, ray.direction, side)?;
-        let from_m = ray.from_m + ray.direction * t;
-        let slope = self.place.surface.at(from_m.x, from_m.z).slope;
-        let normal = normal_from_slope(slope.x, slope.y) * side;
-        let ior = self.place.ior;
-        let direction = match route {
-            Route::Refracted => refract_direction(ray.direction, normal, ior)?,
-            Route::Left => refract_direction(ray.direction, normal, 1.0 / ior)?,
-            Route::Mirrored | Route::Direct => reflect_direction(ray.direction, normal),
-        };
-        Some(Ray { from_m, direction })
+        Some((ray, share))
     }
 
-    /// Position, normal and object of the first surface before `until_m`.
-    fn first_surface(
-        &mut self,
-        ray: Ray,
-        until_m: f64,
-        with_floor: bool,
-    ) -> Option<(DVec3, DVec3, Option<usize>)> {
+    /// The first surface before `until_m`.
+    fn first_surface(&mut self, ray: Ray, until_m: f64, with_floor: bool) -> Option<Surfaced> {
         let Ray { from_m, direction } = ray;
         let mut nearest_m = until_m;
         let mut found = None;
@@ -224,8 +330,13 @@ impl<'a> Viewer<'a> {
             let p = from_m + direction * t;
             if t > 0.0 && t < nearest_m && floor.spans(p) {
                 nearest_m = t;
-                let on_floor = DVec3::new(p.x, floor.y_m, p.z);
-                found = Some((on_floor, DVec3::Y, None));
+                found = Some(Surfaced {
+                    distance_m: t,
+                    position_m: DVec3::new(p.x, floor.y_m, p.z),
+                    normal: DVec3::Y,
+                    object: None,
+                    albedo: floor.albedo,
+                });
             }
         }
         let seen = self
@@ -233,32 +344,33 @@ impl<'a> Viewer<'a> {
             .occluders
             .first_seen(from_m, direction, nearest_m, &mut self.stack);
         if let Some(seen) = seen {
-            let p = from_m + direction * seen.distance_m;
-            found = Some((p, seen.normal, Some(seen.object)));
+            found = Some(Surfaced {
+                distance_m: seen.distance_m,
+                position_m: from_m + direction * seen.distance_m,
+                normal: seen.normal,
+                object: Some(seen.object),
+                albedo: seen.albedo,
+            });
         }
         found
     }
 
-    fn finish(
-        &self,
-        (position_m, normal, object): (DVec3, DVec3, Option<usize>),
-        at: DVec2,
-        route: Route,
-    ) -> ViewPoint {
+    fn finish(&self, found: &Surfaced, at: DVec2, turns: &[Turn]) -> ViewPoint {
         ViewPoint {
-            position_m,
-            normal,
-            object,
-            dry: self.place.over_water_m(position_m) > DRY_M,
-            side_m: self.side_m(position_m, normal, at, route),
+            position_m: found.position_m,
+            normal: found.normal,
+            object: found.object,
+            dry: self.place.over_water_m(found.position_m) > DRY_M,
+            side_m: self.side_m(found.position_m, found.normal, at, turns),
+            albedo: found.albedo,
         }
     }
 
     /// The geometric mean of the distances between `p_m` and where the rays of the next pixels along x and y meet its plane.
-    fn side_m(&self, p_m: DVec3, normal: DVec3, at: DVec2, route: Route) -> f64 {
+    fn side_m(&self, p_m: DVec3, normal: DVec3, at: DVec2, turns: &[Turn]) -> f64 {
         let to_next = |step: DVec2| {
             [step, -step].into_iter().find_map(|step| {
-                let Ray { from_m, direction } = self.last_leg(at + step, route)?;
+                let (Ray { from_m, direction }, _) = self.turned(at + step, turns)?;
                 let t = (p_m - from_m).dot(normal) / direction.dot(normal);
                 let distance_m = (from_m + direction * t).distance(p_m);
                 (t > 0.0 && distance_m.is_finite()).then_some(distance_m)
@@ -272,4 +384,19 @@ impl<'a> Viewer<'a> {
         };
         side_m.clamp(least_m, most_m)
     }
+}
+
+/// A camera ray on its way.
+struct Way {
+    turns: Vec<Turn>,
+    ray: Ray,
+    above: bool,
+    /// See [`Leg::weight`].
+    weight: f64,
+    /// See [`Leg::wet_m`].
+    wet_m: f64,
+}
+
+fn middle_of(pixel: [u32; 2]) -> DVec2 {
+    DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5)
 }

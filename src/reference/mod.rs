@@ -17,7 +17,7 @@
 //!   `lamp`, the same for a point light; `map`, rounds of finer and finer lattices until the error is small enough;
 //! - maps on objects: `texels`, where the map's texels lie; `object_rays`, the rays of one light that may hit an object;
 //!   `object_map`, where they hit it;
-//! - views: `camera`, the points that pixels show; `patch`, the light through the water on one of them, searched from that point; `shine`,
+//! - views: `camera`, the points that pixels show, and all ways of their rays; `patch`, the light through the water on one of them, searched from that point; `shine`,
 //!   the direct light of a point light under water; `view`, all points;
 //! - `shadow_edge`: which values lie near the edge of a shadow;
 //! - `closed_form` and `paraboloid`: exact formulas for simple scenes.
@@ -60,6 +60,7 @@ pub use map::{EnergyTerms, ReferenceMap, irradiance_map};
 pub use settings::{ReferenceError, ReferenceSettings, TruthSettings};
 pub use shadow_edge::shadow_edge;
 pub use truth::{Truth, TruthKind, truth};
+pub use view::{RadianceTruth, radiance};
 pub use window::{LightWindow, light_window};
 
 /// How much finer the grids of seas and basins are than the renderer's. What is left of their error in a map, up to 1.5·10⁻⁴, is a tenth of

@@ -17,6 +17,8 @@ struct WorldTriangle {
     edge_2_m: DVec3,
     /// Shading normals at the corners, of any length.
     normals: [DVec3; 3],
+    /// Diffuse reflectance.
+    albedo: [f64; 3],
     object: usize,
     node: usize,
 }
@@ -61,6 +63,8 @@ pub(super) struct Seen {
     pub(super) object: usize,
     /// Unit shading normal on the side of the ray.
     pub(super) normal: DVec3,
+    /// Diffuse reflectance.
+    pub(super) albedo: [f64; 3],
 }
 
 /// All triangles of a scene.
@@ -115,6 +119,11 @@ impl Occluders {
                     edge_2_m: c - a,
                     // Normals go with the transposed inverse of the placement.
                     normals: triangle.normals.map(|n| rotation * (n.as_dvec3() / scale)),
+                    albedo: object.albedo.unwrap_or_else(|| {
+                        mesh.materials[triangle.material as usize]
+                            .albedo
+                            .map(f64::from)
+                    }),
                     object: index,
                     node: 0,
                 });
@@ -209,6 +218,7 @@ impl Occluders {
                         distance_m: t,
                         object: triangle.object,
                         normal: triangle.normal_towards(direction, u, v),
+                        albedo: triangle.albedo,
                     });
                     return t;
                 }

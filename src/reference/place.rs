@@ -22,6 +22,8 @@ pub(super) struct Floor {
     min_m: DVec2,
     /// Upper corner (x, z).
     max_m: DVec2,
+    /// Diffuse reflectance.
+    pub(super) albedo: [f64; 3],
 }
 
 impl Floor {
@@ -45,7 +47,7 @@ pub(super) struct Place {
     /// The floor.
     pub(super) floor: Option<Floor>,
     /// All skies.
-    sky: Sky,
+    pub(super) sky: Sky,
     /// Meshes, in the same coordinates.
     pub(super) occluders: Occluders,
     /// Suns above the horizon and point lights above the floor that contribute to the output; suns come first.
@@ -77,6 +79,7 @@ impl Place {
                 y_m: -floor.depth_m,
                 min_m: center_m - half_m,
                 max_m: center_m + half_m,
+                albedo: floor.albedo,
             }
         });
         let drift = LazyCell::new(|| LampDrift::of(&surface, ior));

@@ -7,7 +7,7 @@ use crate::scene::{Light, Scene};
 /// Sky light in the air and, as under flat water, below the surface.
 pub(super) struct Sky {
     /// Of all skies, W/(m² sr).
-    radiance: [f64; 3],
+    pub(super) radiance: [f64; 3],
     ior: f64,
     extinction_per_m: [f64; 3],
     /// Share of it that flat water lets through.

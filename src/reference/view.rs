@@ -1,5 +1,6 @@
 //! The light at the points that a camera sees.
 
+use std::f64::consts::PI;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
@@ -13,6 +14,7 @@ use super::place::Place;
 use super::shine::shine;
 use super::tally::add_to;
 use super::{ReferenceError, Truth, TruthKind, TruthSettings};
+use crate::physics::attenuation::transmission;
 use crate::scene::{Output, ResolvedScene};
 
 /// Rays per footprint of evenly lit water in the first round, each half.
@@ -114,6 +116,86 @@ pub(super) fn view(
         }),
         seconds: 0.0,
         from_disk: false,
+    })
+}
+
+/// The radiance at the pixels of a view.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RadianceTruth {
+    /// Pixels along x.
+    pub width: u32,
+    /// Pixels along y.
+    pub height: u32,
+    /// The pixel of the first value.
+    pub first_pixel: [u32; 2],
+    /// Pixels from one value to the next along both axes.
+    pub pixel_step: u32,
+    /// W/(m² sr), row by row.
+    pub radiance: Vec<[f64; 3]>,
+    /// Estimated relative L1 error of `radiance`, from two independent halves.
+    pub relative_error: f64,
+    /// Rays of light counted.
+    pub rays: u64,
+}
+
+/// The radiance that the camera of `resolved` sees through the middle of each pixel: every way of its ray that meets the water at most
+/// `quality.bounces` times (at least once) is followed to its end.
+///
+/// # Errors
+/// As [`truth`](super::truth).
+pub fn radiance(
+    resolved: &ResolvedScene,
+    settings: &TruthSettings,
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<RadianceTruth, ReferenceError> {
+    settings.check()?;
+    let Output::View(output) = &resolved.scene.output else {
+        return Err(ReferenceError::NoCamera);
+    };
+    let picture = Picture::of(resolved)?;
+    let place = Place::of(resolved, picture.middle_m())?;
+    let grid = PixelGrid::of(
+        output.width.max(1),
+        output.height.max(1),
+        settings.most_points,
+    );
+    let bounces = resolved.scene.quality.bounces.max(1);
+    let mut viewer = Viewer::of(&place, &picture);
+    let mut legs = Vec::new();
+    for (index, pixel) in grid.pixels().enumerate() {
+        let of_pixel = viewer.legs(pixel, bounces).into_iter();
+        legs.extend(of_pixel.map(|leg| (index, leg)));
+        if cancelled() {
+            return Err(ReferenceError::Cancelled);
+        }
+    }
+    let points: Vec<Option<Lit>> = legs
+        .iter()
+        .map(|(_, leg)| leg.end.map(|point| lit(&place, point)))
+        .collect();
+    let counted = rounds(&place, &points, settings, &|_| {}, cancelled)?;
+    let halves = irradiance_halves(&points, &counted).map(|irradiance| {
+        let mut pixels = vec![[0.0; 3]; grid.size[0] as usize * grid.size[1] as usize];
+        for ((pixel, leg), irradiance) in legs.iter().zip(&irradiance) {
+            for c in 0..3 {
+                let radiance = match &leg.end {
+                    Some(point) => point.albedo[c] * irradiance[c] / PI,
+                    None => place.sky.radiance[c],
+                };
+                let left = transmission(place.extinction_per_m[c], leg.wet_m);
+                pixels[*pixel][c] += leg.weight * left * radiance;
+            }
+        }
+        pixels
+    });
+    Ok(RadianceTruth {
+        width: grid.size[0],
+        height: grid.size[1],
+        first_pixel: grid.first,
+        pixel_step: grid.step,
+        radiance: mean(&halves[0], &halves[1]),
+        relative_error: half_difference(&halves[0], &halves[1]),
+        rays: counted.iter().map(|(_, rays)| rays).sum(),
     })
 }
 

@@ -13,7 +13,9 @@ use crate::facts::warnings::{SCATTERING_NOT_FOLLOWED, WAVES_UNDERSAMPLED};
 use crate::frame::{FAR_DEPTH_M, Layer};
 use crate::plan;
 use crate::scene::{LayerName, Receiver};
-use crate::stages::camera_hits::{MARCH_UNFINISHED, VISIBLE_ALBEDO, VISIBLE_DEPTH};
+use crate::stages::camera_hits::{
+    CUT_OFF, MARCH_UNFINISHED, OUTSIDE_MAP, VISIBLE_ALBEDO, VISIBLE_DEPTH,
+};
 use crate::stages::maps::MapLayout;
 use crate::stages::points::{POINT_IRRADIANCE, POINTS};
 use crate::stages::shade::RADIANCE;
@@ -337,6 +339,7 @@ pub(super) struct PointLayers<'a> {
     layers: BTreeMap<LayerName, Layer>,
     outside_map: u64,
     unfinished: u64,
+    cut_off: u64,
 }
 
 impl<'a> PointLayers<'a> {
@@ -368,6 +371,7 @@ impl<'a> PointLayers<'a> {
             layers,
             outside_map: 0,
             unfinished: 0,
+            cut_off: 0,
         }
     }
 
@@ -388,8 +392,10 @@ impl<'a> PointLayers<'a> {
         let three = |v: &[f32]| [v[0], v[1], v[2], 0.0];
         if *source == RADIANCE {
             for notes in band.chunks_exact(words).map(|v| v[3]) {
-                self.outside_map += u64::from(notes % MARCH_UNFINISHED != 0.0);
-                self.unfinished += u64::from(notes >= MARCH_UNFINISHED);
+                let has = |note: u32| u64::from(notes as u32 & note != 0);
+                self.outside_map += has(OUTSIDE_MAP);
+                self.unfinished += has(MARCH_UNFINISHED);
+                self.cut_off += has(CUT_OFF);
             }
             let per_sample = 1.0 / (self.facts.quality.pixel_samples as f32).powi(2);
             fill(layers.get_mut(&LayerName::Radiance), &|v| {
@@ -453,6 +459,14 @@ impl<'a> PointLayers<'a> {
             "pixels_along_water",
             "have camera rays at such a grazing angle to the waves that the search for their hit on the water ran out of steps; they may show a wrong point of the water",
         );
+        let bounces = self.facts.legs().bounces;
+        let cut_off = of_pixels(
+            self.cut_off,
+            "rays_cut_off",
+            &format!(
+                "have camera rays that meet the water more than {bounces} times (`quality.bounces`); over the water they end there and show the sky, in it they go straight on"
+            ),
+        );
         let coarse = self
             .layers
             .get(&LayerName::Position)
@@ -460,6 +474,7 @@ impl<'a> PointLayers<'a> {
         let warnings = outside
             .into_iter()
             .chain(unfinished)
+            .chain(cut_off)
             .chain(coarse)
             .collect();
         Ok((self.layers, warnings))

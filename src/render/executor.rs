@@ -318,6 +318,7 @@ impl Renderer {
                     rows,
                     offset: sample.offset,
                     sample_index: sample.index,
+                    leg: sample.leg,
                 };
                 let mut encoder = self.encoder("band");
                 let time_ms = &mut result.time_ms;
@@ -363,6 +364,7 @@ impl Renderer {
                 rows: step.min(height - first_row),
                 offset: [0.0; 2],
                 sample_index: 0,
+                leg: 0,
             };
             let started = Recording::start(&result.time_ms);
             let mut encoder = self.encoder("points");
@@ -550,30 +552,39 @@ struct Traced<'a> {
     is_current: bool,
 }
 
-/// One sample of the pixels of a band: a ray through each pixel.
+/// One sample of the pixels of a band: one way of a ray through each pixel.
 struct Sample {
     offset: [f64; 2],
     index: u32,
+    /// See [`BandRun::leg`].
+    leg: u32,
     /// Goes through the pixels' centres; the layers that are not averaged come from it.
     is_middle: bool,
     /// The radiance sum is complete after it.
     ends_radiance: bool,
 }
 
-/// The samples of a view: an even grid in the pixel, and before it one through the pixel's centre if layers need it.
+/// The samples of a view: an even grid in the pixel, with all ways of each ray, and before it one through the pixel's centre if layers need
+/// it.
 fn samples(facts: &SceneFacts) -> Vec<Sample> {
     let side = if facts.output.wants(LayerName::Radiance) {
         facts.quality.pixel_samples
     } else {
         1
     };
-    let count = side * side;
+    let legs = if facts.output.wants(LayerName::Radiance) {
+        facts.legs().count()
+    } else {
+        1
+    };
+    let count = side * side * legs;
     let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
     let mut all: Vec<Sample> = (0..count)
         .map(|index| Sample {
-            offset: [place(index % side), place(index / side)],
+            offset: [place(index / legs % side), place(index / legs / side)],
             index,
-            is_middle: side == 1,
+            leg: index % legs,
+            is_middle: side == 1 && index == 0,
             ends_radiance: index + 1 == count,
         })
         .collect();
@@ -588,6 +599,7 @@ fn samples(facts: &SceneFacts) -> Vec<Sample> {
             Sample {
                 offset: [0.0; 2],
                 index: 0,
+                leg: 0,
                 is_middle: true,
                 ends_radiance: false,
             },

@@ -5,7 +5,9 @@ use utoipa::ToSchema;
 
 use super::dials::MethodChoice;
 use super::parse::integer;
-use super::ranges::{Layers, LevelMapTexels, MapTexels, PixelSamples, SplitLevels, WaterCells};
+use super::ranges::{
+    Bounces, Layers, LevelMapTexels, MapTexels, PixelSamples, SplitLevels, WaterCells,
+};
 
 /// The dials that trade accuracy for time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -66,6 +68,12 @@ pub struct Quality {
     #[serde(deserialize_with = "integer::<PixelSamples, _>")]
     #[schema(minimum = 1, maximum = 8)]
     pub pixel_samples: u32,
+    /// How often a camera ray may meet the water, 0 … 4. Default 1. Views only. Each time it splits into a ray that goes through the water
+    /// and one that is mirrored, if the scene has something that both can show; so the time of the camera's passes may double with
+    /// each. 0: the ray goes through once, and the water mirrors only the sky. What is cut off is reported.
+    #[serde(deserialize_with = "integer::<Bounces, _>")]
+    #[schema(minimum = 0, maximum = 4)]
+    pub bounces: u32,
 }
 
 impl Default for Quality {
@@ -82,6 +90,7 @@ impl Default for Quality {
             time_budget_ms: None,
             estimate_error: false,
             pixel_samples: 1,
+            bounces: 1,
         }
     }
 }

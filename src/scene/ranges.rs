@@ -54,6 +54,8 @@ pub const COORDINATE: Range = Range::new(-1e8, 1e8, "m");
 pub const EXTENT: Range = Range::new(1e-6, 1e6, "m");
 /// Angles that may exceed a full turn.
 pub const TURNING_ANGLE: Range = Range::new(-1e6, 1e6, "degrees");
+/// `dome_radius_m` of a camera.
+pub const DOME_RADIUS: Range = Range::new(0.0, 10.0, "m");
 /// `water.ior`.
 pub const IOR: Range = Range::new(1.0, 4.0, "");
 /// `water.absorption_per_m` and `water.scattering_per_m`.
@@ -190,6 +192,8 @@ integers! {
     SplitLevels = 0..=8;
     /// `quality.pixel_samples`.
     PixelSamples = 1..=8;
+    /// `quality.bounces`.
+    Bounces = 0..=4;
     /// `samples` of ripples.
     BasinSamples = 16..=1024;
     /// `seed`.

@@ -293,6 +293,14 @@ impl Camera {
     }
 }
 
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde calls it by reference"
+)]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 /// Gives a camera without `intrinsics` the default field of view.
 fn with_field_of_view(mut camera: PerspectiveCamera) -> PerspectiveCamera {
     if camera.intrinsics.is_none() {
@@ -331,6 +339,10 @@ pub struct PerspectiveCamera {
     /// The lens of a calibrated camera.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intrinsics: Option<Intrinsics>,
+    /// Radius of the dome port around the eye, m, 0 … 10. Default 0: none. Rays start at the dome, which they cross at right angles, so
+    /// a camera whose dome is cut by the water shows a split picture: what lies over and what lies under the water line.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub dome_radius_m: f64,
 }
 
 /// Intrinsic parameters of a pinhole camera, pixels of a picture of `output.width` × `output.height`.

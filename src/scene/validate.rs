@@ -357,6 +357,8 @@ fn camera(findings: &mut Findings, camera: &Camera, output: &Output) {
             if let Some(intrinsics) = &c.intrinsics {
                 lens(findings, intrinsics, output);
             }
+            let pointer = "/camera/dome_radius_m";
+            findings.number(pointer, c.dome_radius_m, &ranges::DOME_RADIUS);
         }
         Camera::Orthographic(c) => {
             findings.number("/camera/height_m", c.height_m, &ranges::EXTENT);
@@ -450,6 +452,7 @@ fn quality(findings: &mut Findings, quality: &Quality) {
     findings.number("/quality/level_of_detail", quality.level_of_detail, detail);
     findings.integer::<ranges::SplitLevels>("/quality/split_levels", quality.split_levels);
     findings.integer::<ranges::PixelSamples>("/quality/pixel_samples", quality.pixel_samples);
+    findings.integer::<ranges::Bounces>("/quality/bounces", quality.bounces);
     if let Some(target) = quality.target_error {
         findings.number("/quality/target_error", target, &ranges::TARGET_ERROR);
     }

@@ -9,9 +9,12 @@ use crate::facts::SceneFacts;
 use crate::gpu_struct;
 use crate::graph::BandRun;
 
-/// Added to a pixel's notes (the fourth value of its radiance) by a sample whose march along the water ran out of steps. A sample that
-/// sees the floor beside its map adds 1.
-pub const MARCH_UNFINISHED: f32 = 128.0;
+/// Note of a pixel (a bit of the fourth value of its radiance): it sees the floor outside its map.
+pub const OUTSIDE_MAP: u32 = 1;
+/// Note of a pixel: a march along the water ran out of steps.
+pub const MARCH_UNFINISHED: u32 = 2;
+/// Note of a pixel: a ray met the water too often.
+pub const CUT_OFF: u32 = 4;
 
 gpu_struct! {
     /// The uniform of `shaders/shared/view.wgsl`; fields are documented there.
@@ -44,6 +47,10 @@ gpu_struct! {
         sky_path_factor: f32,
         layers: u32,
         sample_index: u32,
+        leg: u32,
+        splits: u32,
+        bounces: u32,
+        start_m: f32,
         pad: u32,
         sample_offset: [f32; 2],
     }
@@ -79,7 +86,14 @@ pub static PASS: Pass = Pass {
     writes: &[&POINTS, &VISIBLE_DEPTH, &VISIBLE_ALBEDO, &VISIBLE_TRANSPORT],
     uniforms: &[("view", View::LAYOUT)],
     views: &[],
-    wanted: wanted_for_camera,
+    wanted: |facts| {
+        let view = wanted_for_camera(facts)?;
+        let legs = facts.legs();
+        Ok(match legs.count() {
+            1 => format!("{view}; {}", legs.reason),
+            count => format!("{view}, {count} ways of each ray; {}", legs.reason),
+        })
+    },
     steps: Steps::Band(|facts, band| pixel_step("camera_hits_main", facts, band)),
     work: |facts| pixels(facts) as f64 * (1.0 + facts.water.surface.gpu_work_per_point()),
 };
@@ -121,6 +135,7 @@ fn view_uniform(facts: &SceneFacts, band: BandRun) -> Vec<u8> {
         return Vec::new();
     };
     let floor = facts.receivers.floor.as_ref();
+    let legs = facts.legs();
     let view = View {
         eye: vec4(camera.eye, 0.0),
         right: vec4(camera.right, 0.0),
@@ -149,6 +164,10 @@ fn view_uniform(facts: &SceneFacts, band: BandRun) -> Vec<u8> {
         sky_path_factor: facts.lights.sky.path_factor as f32,
         layers: facts.quality.layers,
         sample_index: band.sample_index,
+        leg: band.leg,
+        splits: legs.splits,
+        bounces: legs.bounces,
+        start_m: camera.start_m as f32,
         pad: 0,
         sample_offset: band.offset.map(|o| o as f32),
     };

@@ -14,7 +14,7 @@ pub fn predicted_ms(
     frame_ms: f64,
     rates: &BTreeMap<String, PassRate>,
 ) -> f64 {
-    let samples = f64::from(facts.quality.pixel_samples).powi(2);
+    let samples = f64::from(facts.quality.pixel_samples).powi(2) * f64::from(facts.legs().count());
     let runs = plan.report.passes.iter().map(|pass| f64::from(pass.runs));
     let passes: f64 = (plan.graph.passes.iter().zip(runs))
         .filter_map(|((pass, _), runs)| {

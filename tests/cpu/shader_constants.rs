@@ -7,9 +7,8 @@ use caustica::graph::{BandRun, BeamSetRun, Scope};
 use caustica::methods::planes::depth_profile;
 use caustica::methods::reference_planes::MOST_PLANES;
 use caustica::methods::{self, Method};
-use caustica::scene::ranges::{self, Integer as _};
 use caustica::scene::{DialKind, MethodChoice};
-use caustica::stages::camera_hits::MARCH_UNFINISHED;
+use caustica::stages::camera_hits::{CUT_OFF, MARCH_UNFINISHED, OUTSIDE_MAP};
 use caustica::stages::level_map::LevelMapRun;
 use caustica::stages::maps::{self, MapLayout};
 use caustica::stages::{
@@ -52,10 +51,13 @@ fn agrees(name: &str, expected: f64) {
 fn notes_of_pixels_agree_and_stay_apart() {
     agrees("MARCH_UNFINISHED", f64::from(MARCH_UNFINISHED));
     agrees("FAR_DEPTH_M", f64::from(FAR_DEPTH_M));
-    let most_samples = ranges::PixelSamples::MAX.pow(2) as f32;
-    assert!(most_samples < MARCH_UNFINISHED);
-    let most = most_samples * (MARCH_UNFINISHED + 1.0);
-    assert!(most < (1_u32 << f32::MANTISSA_DIGITS) as f32);
+    agrees("OUTSIDE_MAP", f64::from(OUTSIDE_MAP));
+    agrees("CUT_OFF", f64::from(CUT_OFF));
+    assert_eq!(
+        OUTSIDE_MAP | MARCH_UNFINISHED | CUT_OFF,
+        7,
+        "bits of their own"
+    );
 }
 
 #[test]
@@ -234,6 +236,7 @@ const BAND: BandRun = BandRun {
     rows: 67,
     offset: [0.0; 2],
     sample_index: 0,
+    leg: 0,
 };
 
 /// (workgroups × size of one, invocations needed) of the first step of a pass, as plain products.

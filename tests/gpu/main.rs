@@ -40,6 +40,7 @@ mod kernels;
 mod lamp_truths;
 mod lamps;
 mod layers;
+mod legs;
 mod level_maps;
 mod level_maps_service;
 mod living_water;
