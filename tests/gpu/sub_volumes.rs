@@ -44,6 +44,9 @@ const ALL: [Dials; 4] = [
     PAPER,
 ];
 
+/// A plate, as the text of an OBJ file.
+const PLATE: &str = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 4 3 2\n";
+
 fn choice(dials: Dials, shadows: &str) -> MethodChoice {
     let mut choice = MethodChoice::named(METHOD.name)
         .with(&SAMPLE_PLANES, dials.planes)
@@ -85,7 +88,7 @@ fn pool(lights: Value, output: Value) -> Value {
         "lights": lights,
         "objects": [{ "mesh": "box.obj", "translation_m": [0.1, -1.2, 0.2], "scale": 0.5,
                       "rotation": [0.2052, 0.3078, 0.1026, 0.9234] }],
-        "camera": { "position_m": [0, 2.5, 3], "target_m": [0, -1.2, 0], "vertical_fov_deg": 30 },
+        "camera": { "position_m": [0, 2.5, 3], "target_m": [0, -1.2, 0], "vertical_fov_deg": 18 },
         "quality": { "water_cells": 97, "level_map_texels": 64 },
         "output": output
     })
@@ -181,7 +184,12 @@ fn ramp() -> Arc<Mesh> {
     )
 }
 
-/// The ramp under a sine, in closed form or with folds.
+/// A horizontal plate of two by two waves, at the level of the water.
+fn plate() -> Arc<Mesh> {
+    scene_files::mesh_of(PLATE.as_bytes())
+}
+
+/// The ramp or the plate under a sine, which has a closed form.
 fn ramp_under(mesh: &Mesh, amplitude_m: f64) -> Value {
     json!({
         "water": {
@@ -215,16 +223,21 @@ fn the_comparison_rejects_planted_errors() {
         ("rise_m / to_eye.y", "0.9 * rise_m / to_eye.y"),
         ("entering * densities", "densities"),
     ];
-    let mut scene = pool(sun(), view());
-    scene["camera"]["vertical_fov_deg"] = json!(15);
-    scene["water"]["waves"][0]["amplitude_m"] = json!(0.05);
+    let mesh = ramp();
+    let mut scene = ramp_under(&mesh, 0.05);
+    scene["lights"] = sun();
+    scene["quality"]["water_cells"] = json!(64);
     let dials = Dials {
+        planes: 6,
         has_faces: true,
         ..OURS
     };
-    let resolved = with(scene, &choice(dials, OFF), &[]);
+    let resolved = with(scene, &choice(dials, OFF), &[mesh]);
     let points = points_of(&resolved);
     let plain = plain_sub_volumes::irradiance(&resolved, &points, dials);
+    let found = at_points(&mut harness::renderer(), &resolved, &points);
+    let (l1, many) = difference(&found, &plain);
+    assert!(l1 < 2e-4 && many < 4e-3, "{l1:e} {many}");
     for (from, to) in plants {
         let sources = methods::embedded().with_replacement(file, from, to);
         let sources = sources.unwrap_or_else(|| panic!("{file} no longer says `{from}`"));
@@ -232,7 +245,7 @@ fn the_comparison_rejects_planted_errors() {
         let found = at_points(&mut renderer, &resolved, &points);
         let (l1, many) = difference(&found, &plain);
         println!("{to}: L1 {l1:.1e}, off {:.1} %", 100.0 * many);
-        assert!(many > 0.02, "{to}: {many}");
+        assert!(l1 > 1e-3 && many > 0.1, "{to}: {l1:e} {many}");
     }
 }
 
@@ -249,7 +262,13 @@ fn the_error_falls_with_the_planes() {
         &meshes,
     ));
     for dials in ALL {
-        let errors = [4, 8, 16, 32, 64].map(|planes| {
+        // With few planes the way to the front face ends at a side of the volume instead.
+        let counts = if dials.has_faces {
+            [16, 32, 64, 128, 256]
+        } else {
+            [4, 8, 16, 32, 64]
+        };
+        let errors = counts.map(|planes| {
             let choice = choice(Dials { planes, ..dials }, "on");
             let map = Map::from(&with(scene.clone(), &choice, &meshes));
             let error = metrics::relative_l1(map.values(), exact.values()).unwrap();
@@ -262,16 +281,24 @@ fn the_error_falls_with_the_planes() {
     }
 }
 
-/// The error at points of the floor against the closed form falls with the cells, as their size; and on the ramp with many planes.
+/// The error at points against the closed form falls with the cells, as their size: on the floor, and with many planes on a plate.
 #[test]
 fn the_error_falls_with_the_cells() {
-    let mesh = ramp();
-    let meshes = [Arc::clone(&mesh)];
-    for on_floor in [true, false] {
+    let plate = plate();
+    let closed = |depth_m: f64| SineUnderZenith {
+        amplitude_m: 0.02,
+        wavelength_m: 1.0,
+        phase_rad: std::f64::consts::FRAC_PI_2,
+        ior: 1.333,
+        depth_m,
+        extinction_per_m: 0.1,
+    };
+    for depth_m in [2.0, 1.37] {
         let errors = [32, 64, 128, 256].map(|cells| {
-            let mut scene = ramp_under(&mesh, 0.02);
+            let mut scene = ramp_under(&plate, 0.02);
             scene["quality"]["water_cells"] = json!(cells);
-            if on_floor {
+            scene["objects"][0]["translation_m"] = json!([0, -depth_m, 0]);
+            if depth_m == 2.0 {
                 scene["objects"] = json!([]);
                 scene["output"] = json!({ "kind": "irradiance_map", "receiver": "floor",
                     "min_m": [-1, -1], "max_m": [1, 1], "width": 64, "height": 32 });
@@ -280,42 +307,26 @@ fn the_error_falls_with_the_cells() {
                 planes: 256,
                 ..OURS
             };
-            let resolved = with(scene, &choice(dials, "on"), &meshes);
+            let resolved = with(scene, &choice(dials, "on"), &[Arc::clone(&plate)]);
             let points = points_of(&resolved);
             let map = Map::from(&resolved);
-            let (mut found, mut due) = (Vec::new(), Vec::new());
-            for (texel, point) in map.texels.iter().zip(&points) {
-                if point.receiver < 0.0 {
-                    continue;
-                }
-                let closed = SineUnderZenith {
-                    amplitude_m: 0.02,
-                    wavelength_m: 1.0,
-                    phase_rad: std::f64::consts::FRAC_PI_2,
-                    ior: 1.333,
-                    depth_m: -f64::from(point.position_m[1]),
-                    extinction_per_m: 0.1,
-                };
-                found.push(texel[0]);
-                // The closed form is for a horizontal receiver; on the ramp light comes nearly from above.
-                due.push(closed.irradiance_at(f64::from(point.position_m[0])));
-            }
-            if !on_floor {
-                let turned = f64::from(points[points.len() / 2].normal[1]);
-                for due in &mut due {
-                    *due *= turned;
-                }
-            }
+            let texels = map.texels.iter().zip(&points);
+            let lit = texels.filter(|(_, point)| point.receiver >= 0.0);
+            let (found, due): (Vec<f64>, Vec<f64>) = lit
+                .map(|(texel, point)| {
+                    let x_m = f64::from(point.position_m[0]);
+                    (texel[0], closed(depth_m).irradiance_at(x_m))
+                })
+                .unzip();
+            assert!(found.len() > 1000, "{}", found.len());
             (
                 f64::from(cells),
                 metrics::relative_l1(&found, &due).unwrap(),
             )
         });
         let order = convergence_order(&errors);
-        println!("floor {on_floor}: {errors:?}, order {order:.2}");
-        if on_floor {
-            assert!(order >= 0.9, "{order}");
-        }
+        println!("{depth_m} m: {errors:?}, order {order:.2}");
+        assert!(order >= 0.9, "{depth_m}: {order}");
     }
 }
 
@@ -336,7 +347,7 @@ fn the_floor_does_not_depend_on_the_planes() {
 /// Flat water: mean and every texel are right, on the floor and on a plate between planes.
 #[test]
 fn flat_water_is_even() {
-    let mesh = scene_files::mesh_of(b"v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 4 3 2\n");
+    let mesh = plate();
     let meshes = [Arc::clone(&mesh)];
     for elevation_deg in [60.0, 20.0] {
         for (dials, depth_m) in ALL.into_iter().flat_map(|d| [(d, 2.0), (d, 0.93)]) {
@@ -381,33 +392,50 @@ fn flat_water_is_even() {
     }
 }
 
-/// Where the light folds, the flux ratio makes the mean too bright, and the scaled intensity does not.
+/// Over the depths of a sub-volume, plates get the light that falls on them in the mean, also where light folds; with the flux ratio they get
+/// more.
 #[test]
 fn scaled_intensities_keep_the_flux_where_light_folds() {
-    let mesh = ramp();
-    let meshes = [Arc::clone(&mesh)];
-    // Its first focus is 0.6 m deep.
-    let scene = ramp_under(&mesh, 0.15);
-    let of = |choice: &MethodChoice| {
-        let map = Map::from(&with(scene.clone(), choice, &meshes));
-        assert!(map.values().iter().all(|v| v.is_finite()));
-        map.mean(0)
-    };
-    let due = of(&MethodChoice::named(caustic_volume::METHOD.name));
-    for planes in [5, 20, 80] {
-        let [scaled, ratio] =
-            [OURS, PAPER].map(|dials| of(&choice(Dials { planes, ..dials }, "on")) / due - 1.0);
-        println!("{planes} planes: scaled {scaled:+.2e}, flux ratio {ratio:+.2e}");
-        assert!(scaled.abs() < 2e-2, "{planes}: {scaled}");
-        assert!(ratio > 3.0 * scaled.abs(), "{planes}: {ratio}");
+    const DEPTHS: u32 = 16;
+    let plate = plate();
+    let planes = 5;
+    // What the shader takes as the range of depths: from the crests to the floor, with a thousandth of room.
+    let (crest_m, floor_m) = (0.15, 2.0);
+    let room_m = (floor_m + crest_m) * 1e-3 + 1e-6;
+    let gap_m = (floor_m + crest_m + 2.0 * room_m) / f64::from(planes);
+    // The first focus is 0.6 m deep, in the third sub-volume.
+    for number in [1, 2, 3] {
+        let mut sums = [0.0; 3];
+        for k in 0..DEPTHS {
+            let down = (f64::from(k) + 0.5) / f64::from(DEPTHS);
+            let depth_m = -crest_m - room_m + (f64::from(number) + down) * gap_m;
+            let mut scene = ramp_under(&plate, crest_m);
+            scene["water"]["absorption_per_m"] = json!([0, 0, 0]);
+            scene["objects"][0]["translation_m"] = json!([0, -depth_m, 0]);
+            scene["quality"]["level_map_texels"] = json!(64);
+            let of = |choice: &MethodChoice| {
+                let map = Map::from(&with(scene.clone(), choice, &[Arc::clone(&plate)]));
+                map.values().iter().sum::<f64>()
+            };
+            sums[0] += of(&MethodChoice::named(caustic_volume::METHOD.name));
+            let ratio = Dials {
+                is_scaled: false,
+                ..OURS
+            };
+            for (sum, dials) in sums[1..].iter_mut().zip([OURS, ratio]) {
+                *sum += of(&choice(Dials { planes, ..dials }, "on"));
+            }
+        }
+        let [scaled, ratio] = [sums[1], sums[2]].map(|sum| sum / sums[0] - 1.0);
+        println!("sub-volume {number}: scaled {scaled:+.2e}, flux ratio {ratio:+.2e}");
+        assert!(scaled.abs() < 1e-2, "{number}: {scaled}");
+        assert!(ratio > 2e-2, "{number}: {ratio}");
     }
 }
 
 /// Triangles without area on a plane or between planes, in every combination of the dials: all finite.
 #[test]
 fn foci_are_finite() {
-    /// A plate, as the text of an OBJ file.
-    const PLATE: &str = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 4 3 2\n";
     for name in ["a_point_focus_on_the_floor", "a_line_focus_on_the_floor"] {
         let case = caustica::lab::hard_cases::find(name).unwrap();
         let mut scene = caustica::lab::hard_cases::scene(case).unwrap();
