@@ -477,11 +477,17 @@ fn shadows_under_flat_water_are_those_of_rays_and_under_waves_are_not() {
     let waves =
         json!([{ "kind": "sine", "amplitude_m": 0.04, "wavelength_m": 0.8, "direction_deg": 40 }]);
     let dark = |waves: &Value, shadows: &str| -> Vec<bool> {
-        let map = Map::from(&with(
-            box_over_floor(waves.clone()),
-            &choice(OURS, shadows),
-            &[],
-        ));
+        let choice = choice(OURS, shadows);
+        let map = Map::from(&with(box_over_floor(waves.clone()), &choice, &[]));
+        // A frame whose shadows are elsewhere says so, with the light that the box blocks.
+        let mut warnings = map.stats.warnings.iter();
+        let warning = warnings.find(|w| w.code == "shadows_ignore_waves");
+        let is_due = shadows == FLAT_WATER && *waves != json!([]);
+        assert_eq!(warning.is_some(), is_due, "{shadows}");
+        if let Some(warning) = warning {
+            let flux_w = warning.flux_w.unwrap();
+            assert!(flux_w[0] > 100.0 && flux_w[0] < 400.0, "{flux_w:?}");
+        }
         map.texels.iter().map(|texel| texel[0] == 0.0).collect()
     };
     let unlike = |a: &[bool], b: &[bool]| a.iter().zip(b).filter(|(a, b)| a != b).count();

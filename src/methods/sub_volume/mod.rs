@@ -151,6 +151,7 @@ pub static METHOD: Method = Method {
         conserves_energy: false,
         leaves_out: LeavesOut {
             shadows: SHADOWS.word(quality) == OFF,
+            waves_in_shadows: SHADOWS.word(quality) == FLAT_WATER,
             ..LeavesOut::default()
         },
         ..MethodFacts::new(METHOD.name, Product::PointIrradiance)
