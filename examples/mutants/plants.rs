@@ -121,4 +121,20 @@ pub(crate) const ALL: &[Plant] = &[
         ],
         what: "every piece of a dispatch does the work of the first piece",
     },
+    Plant {
+        file: "src/physics/interpolated_flux.rs",
+        from: "2.0 * mixed * upper_density",
+        to: "mixed * upper_density",
+        binary: "cpu",
+        tests: &["physics::flux_between_two_cuts_is_the_integral"],
+        what: "the flux of a sub-volume is that of other areas between its planes",
+    },
+    Plant {
+        file: "src/methods/sub_volume/point_in_sub_volume.rs",
+        from: "(-camera.forward, true)",
+        to: "(camera.forward, true)",
+        binary: "gpu",
+        tests: &["sub_volumes::points_have_the_light_of_the_plain_program"],
+        what: "parallel rays see the back faces of sub-volumes",
+    },
 ];

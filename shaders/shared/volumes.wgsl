@@ -9,10 +9,10 @@ struct Volumes {
     row_count: u32,           // rows of the band
     instance_count: u32,
     level: u32,               // of the blocks to bound; for points, the last level
-    is_linear: u32,           // whether the density is taken linearly between the corners
-    has_shadows: u32,         // whether objects cast shadows
+    has_shadows: u32,         // whether a ray looks for objects between the point and the water
     top_m: f32,               // depth of a plane above the crests, negative
     bottom_m: f32,            // depth of a plane below all receivers
+    pad: u32,
 }
 
 @group(0) @binding(1) var<uniform> volumes: Volumes;

@@ -76,6 +76,8 @@ pub struct OwnCells {
 pub struct LeavesOut {
     /// All shadows of objects under water.
     pub shadows: bool,
+    /// That waves displace the shadows of objects under water.
+    pub waves_in_shadows: bool,
     /// Shadows of objects on other objects.
     pub shadows_on_objects: bool,
     /// Light on further layers of objects than the first.

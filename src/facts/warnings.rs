@@ -263,6 +263,17 @@ fn left_out_by_method(facts: &SceneFacts, blocked: &Blocked<'_>) -> Vec<Warning>
         );
         all.push(with_flux(found, blocked.blocked_w()));
     }
+    if wet > 0 && method.leaves_out.waves_in_shadows && facts.water.surface.max_slope() > 0.0 {
+        let found = warning(
+            "shadows_ignore_waves",
+            format!(
+                "method {} takes the shadows of flat water: light that an object blocks is missing where it would be missing without waves",
+                method.name
+            ),
+            "/quality/method",
+        );
+        all.push(with_flux(found, blocked.blocked_w()));
+    }
     if wet > 1 && method.leaves_out.shadows_on_objects {
         let found = warning(
             "objects_cast_no_shadows_on_objects",

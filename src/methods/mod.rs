@@ -14,6 +14,7 @@ pub mod level_map;
 pub mod photon;
 pub mod planes;
 pub mod reference_planes;
+pub mod sub_volume;
 pub mod volumetric;
 
 pub use check::{check, misfits, resolve, shortest, validate};
@@ -34,7 +35,14 @@ macro_rules! list {
     };
 }
 
-list![level_map, planes, volumetric, photon, caustic_volume];
+list![
+    level_map,
+    planes,
+    volumetric,
+    photon,
+    caustic_volume,
+    sub_volume
+];
 
 /// A method.
 pub struct Method {

@@ -10,6 +10,7 @@ pub mod constants;
 pub mod coverage;
 pub mod dispersion;
 pub mod fresnel;
+pub mod interpolated_flux;
 pub mod octahedral;
 pub mod oscillator;
 pub mod refraction;

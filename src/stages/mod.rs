@@ -9,6 +9,7 @@
 //! | points that pixels see or texels lie at | `points`: the slot; `camera_hits` and `texel_points` fill it; `sky_and_air_lights`, `camera_irradiance`, `shade` |
 //! | the frame's estimate of its own error | `coarse_irradiance`, `estimate` |
 //! | the water as an output of its own | `water_map` |
+//! | caustic volumes | `volume_bounds`: shared by methods in which points find their volumes |
 //! | reference planes | `reference_planes`: shared by methods that slice objects |
 //!
 //! Bindings are matched by name: a WGSL variable has the name of the slot it binds.
@@ -41,6 +42,7 @@ pub mod surface;
 pub mod term;
 pub mod texel_points;
 pub mod unfollowed;
+pub mod volume_bounds;
 pub mod water_map;
 
 use crate::facts::SceneFacts;

@@ -506,7 +506,7 @@ const OTHER_MEANINGS: [(&str, &str, &str); 5] = [
 
 /// Names of methods that mean nothing else, so that they count within any identifier. Other names are words of other things too (the
 /// level map of a mesh, more than one plane) and count in quotes and in paths.
-const DISTINCTIVE: [&str; 2] = ["volumetric", "caustic_volume"];
+const DISTINCTIVE: [&str; 3] = ["volumetric", "caustic_volume", "sub_volume"];
 
 /// Places that may name any method: the list of them, and the thesis's own experiment, which compares just these. The folder of a method
 /// may name that method.

@@ -9,6 +9,7 @@ use caustica::physics::dispersion::angular_frequency;
 use caustica::physics::fresnel::{
     diffuse_transmittance, fresnel_reflectance, fresnel_transmittance,
 };
+use caustica::physics::interpolated_flux::interpolated_flux;
 use caustica::physics::refraction::{
     direction_to_light, normal_from_slope, reflect_direction, refract_direction,
 };
@@ -431,4 +432,33 @@ fn every_depth_belongs_to_the_plane_within_half_a_distance() {
     // Half way the interval of the next plane begins.
     assert_eq!(plane_of_depth(0.0, 4.0, 5.0, 1.5), 2.0);
     assert_eq!(plane_of_depth(0.0, 4.0, 5.0, 1.5 - 1e-12), 1.0);
+}
+
+/// The closed form of a sub-volume's flux is the integral, with and without zeros of the area; and for linear areas that keep their sign it is
+/// (r + 1/r + 4) / 6.
+#[test]
+fn flux_between_two_cuts_is_the_integral() {
+    const STEPS: usize = 20_000;
+    let mut with_zeros = 0;
+    for k in 0..400 {
+        let shares = [0.754_877_666, 0.569_840_291, 0.430_159_709, 0.245_122_334];
+        let [upper, mixed, lower, density] = shares.map(|g: f64| (0.5 + g * f64::from(k)).fract());
+        let (upper, mixed, lower) = (2.0 * upper - 1.0, 4.0 * mixed - 2.0, 2.0 * lower - 1.0);
+        let (mut due, mut signs) = (0.0, [false; 2]);
+        for step in 0..STEPS {
+            let t = (step as f64 + 0.5) / STEPS as f64;
+            let area = upper * (1.0 - t) * (1.0 - t) + mixed * 2.0 * t * (1.0 - t) + lower * t * t;
+            signs[usize::from(area > 0.0)] = true;
+            due += area.abs() * ((1.0 - t) * density + t * 0.7) / STEPS as f64;
+        }
+        with_zeros += u32::from(signs == [true; 2]);
+        let found = interpolated_flux(upper, mixed, lower, density, 0.7);
+        assert!((found - due).abs() < 1e-6, "{found} {due}");
+    }
+    assert!(with_zeros > 100 && with_zeros < 390, "{with_zeros}");
+    for r in [1.0, 2.0, 4.0, 8.0] {
+        let found = interpolated_flux(1.0 / r, 0.5 * (1.0 / r + 1.0), 1.0, r, 1.0);
+        let due = (r + 1.0 / r + 4.0) / 6.0;
+        assert!((found - due).abs() < 1e-12, "{r}: {found} {due}");
+    }
 }

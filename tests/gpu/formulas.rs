@@ -48,7 +48,7 @@ fn this_machine_passes_its_self_check() {
 }
 
 /// Ways to break each formula slightly: file, text, replacement.
-const BROKEN: [(&str, &str, &str); 10] = [
+const BROKEN: [(&str, &str, &str); 11] = [
     (
         "lib/fresnel.wgsl",
         "return 0.5 * (r_s * r_s + r_p * r_p);",
@@ -87,6 +87,11 @@ const BROKEN: [(&str, &str, &str); 10] = [
         "(index / (planes - 0.999))",
     ),
     ("lib/octahedral.wgsl", "abs(v) - 1.0;", "abs(v) - 1.0001;"),
+    (
+        "lib/interpolated_flux.wgsl",
+        "2.0 * mixed * upper_density) / 3.0",
+        "2.001 * mixed * upper_density) / 3.0",
+    ),
 ];
 
 fn broken(index: usize) -> ShaderSources {

@@ -48,6 +48,7 @@ mod memory;
 mod own_passes;
 mod photon;
 mod photon_plain;
+mod plain_sub_volumes;
 mod plain_volumes;
 mod planes;
 mod planted;
@@ -62,6 +63,7 @@ mod shadows;
 mod sine_pool;
 mod splitting;
 mod study;
+mod sub_volumes;
 mod symmetry;
 mod tiles;
 #[path = "../support/truths.rs"]

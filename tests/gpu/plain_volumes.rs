@@ -18,37 +18,38 @@ const BINS: usize = 128;
 
 /// A refracted ray.
 #[derive(Clone, Copy)]
-struct Ray {
-    origin: DVec3,
-    direction: DVec3,
+pub(crate) struct Ray {
+    pub(crate) origin: DVec3,
+    pub(crate) direction: DVec3,
+    pub(crate) transmittance: f64,
 }
 
 impl Ray {
     /// Where it crosses the height `y`, forwards or backwards.
-    fn at_height(&self, y: f64) -> DVec2 {
+    pub(crate) fn at_height(&self, y: f64) -> DVec2 {
         let p = self.origin + self.direction * self.length_to(y);
         DVec2::new(p.x, p.z)
     }
 
-    fn length_to(&self, y: f64) -> f64 {
+    pub(crate) fn length_to(&self, y: f64) -> f64 {
         (y - self.origin.y) / self.direction.y
     }
 }
 
-struct Volume {
-    rays: [usize; 3],
+pub(crate) struct Volume {
+    pub(crate) rays: [usize; 3],
     /// Flux below the surface from a light of unit power.
-    flux: f64,
+    pub(crate) flux: f64,
 }
 
 /// The volumes of a light.
-struct Light {
-    rays: Vec<Ray>,
-    volumes: Vec<Volume>,
+pub(crate) struct Light {
+    pub(crate) rays: Vec<Ray>,
+    pub(crate) volumes: Vec<Volume>,
     /// Volumes around each ray.
     around: Vec<Vec<usize>>,
-    power: [f64; 3],
-    extinction_per_m: [f64; 3],
+    pub(crate) power: [f64; 3],
+    pub(crate) extinction_per_m: [f64; 3],
 }
 
 /// What a point gets.
@@ -72,17 +73,19 @@ pub(crate) fn irradiance(resolved: &ResolvedScene, points: &[Point], density: De
     let facts = methods::facts(resolved).unwrap();
     let mut all = vec![Lit::default(); points.len()];
     for set in &facts.lights.beam_sets {
-        add_light(&light_of(&facts, set), points, density, &mut all);
+        let light = light_of(&facts, set);
+        each_near(&light, points, |number, k| {
+            light.add_volume(number, &points[k], density, &mut all[k]);
+        });
     }
     all
 }
 
-fn light_of(facts: &SceneFacts, set: &BeamSet) -> Light {
+pub(crate) fn light_of(facts: &SceneFacts, set: &BeamSet) -> Light {
     let cells = facts.quality.water_cells as usize;
     let side = cells + 1;
     let step = set.grid.places.size() / cells as f64;
-    let mut rays = Vec::with_capacity(side * side);
-    let mut transmittance = Vec::with_capacity(side * side);
+    let mut rays: Vec<Ray> = Vec::with_capacity(side * side);
     for j in 0..side {
         for i in 0..side {
             let s = set.grid.places.min + step * DVec2::new(i as f64, j as f64);
@@ -96,8 +99,11 @@ fn light_of(facts: &SceneFacts, set: &BeamSet) -> Light {
             };
             let normal = normal_from_slope(water.slope.x, water.slope.y);
             let direction = refract_direction(-to_light, normal, set.band.ior).unwrap();
-            rays.push(Ray { origin, direction });
-            transmittance.push(fresnel_transmittance(normal.dot(to_light), set.band.ior));
+            rays.push(Ray {
+                origin,
+                direction,
+                transmittance: fresnel_transmittance(normal.dot(to_light), set.band.ior),
+            });
         }
     }
     let mut volumes = Vec::new();
@@ -119,7 +125,7 @@ fn light_of(facts: &SceneFacts, set: &BeamSet) -> Light {
                     Source::Point { position_m } => solid_angle(a - position_m, b - a, c - a),
                     Source::Submerged { .. } => 0.0,
                 };
-                let enters = corners.map(|k| transmittance[k]).iter().sum::<f64>() / 3.0;
+                let enters = corners.map(|k| rays[k].transmittance).iter().sum::<f64>() / 3.0;
                 let falls = corners.iter().all(|&k| rays[k].direction.y < -LEAST_FALL);
                 if onto * enters <= 0.0 || !falls {
                     continue;
@@ -143,11 +149,12 @@ fn light_of(facts: &SceneFacts, set: &BeamSet) -> Light {
     }
 }
 
-fn position(point: &Point) -> DVec3 {
+pub(crate) fn position(point: &Point) -> DVec3 {
     DVec3::from(point.position_m.map(f64::from))
 }
 
-fn add_light(light: &Light, points: &[Point], density: Density, all: &mut [Lit]) {
+/// Calls `near` for every volume and every point under water that it may hold: the numbers of both.
+pub(crate) fn each_near(light: &Light, points: &[Point], mut near: impl FnMut(usize, usize)) {
     let wet: Vec<usize> = (0..points.len())
         .filter(|&k| points[k].receiver >= 0.0)
         .collect();
@@ -186,7 +193,7 @@ fn add_light(light: &Light, points: &[Point], density: Density, all: &mut [Lit])
         let p = position(&points[k]);
         let bin = bin_of(DVec2::new(p.x, p.z));
         for &number in &bins[bin.y as usize * BINS + bin.x as usize] {
-            light.add_volume(number, &points[k], density, &mut all[k]);
+            near(number, k);
         }
     }
 }

@@ -7,13 +7,13 @@
 //! on the way to the camera.
 
 pub mod point_in_volume;
-pub mod volume_bounds;
 
 use super::{Conformance, Method};
 use crate::facts::method::LeavesOut;
-use crate::facts::{MethodFacts, Product, SceneFacts};
+use crate::facts::{MethodFacts, Product};
 use crate::scene::{Dial, DialKind, DialWord};
 use crate::stages::shaders::embed_shaders;
+use crate::stages::volume_bounds;
 
 /// The word of [`DENSITY`] for a density that varies within a volume's cut.
 pub const LINEAR: &str = "linear";
@@ -65,10 +65,7 @@ pub static METHOD: Method = Method {
     summary: "every point gets the light of the volumes between neighbouring refracted rays that it lies in",
     paper: "Sandberg & Falemo 2005, with shadows and a smooth density as dials",
     dials: &[&DENSITY, &SHADOWS],
-    shaders: embed_shaders![
-        "methods/caustic_volume/point_in_volume.wgsl",
-        "methods/caustic_volume/volume_bounds.wgsl"
-    ],
+    shaders: embed_shaders!["methods/caustic_volume/point_in_volume.wgsl"],
     shared_dials: &["water_cells", "level_map_texels"],
     passes: &[&volume_bounds::PASS, &point_in_volume::PASS],
     // A texel has its mean in the truth, and here the light at one point of it; the difference stays. At points the error falls with the cell's
@@ -83,21 +80,9 @@ pub static METHOD: Method = Method {
         },
         ..MethodFacts::new(METHOD.name, Product::PointIrradiance)
     },
-    supports,
+    supports: volume_bounds::starts_at_the_surface,
     conformance: Conformance {
         sine_pool_error_at_256: 6e-2,
         skips: &[],
     },
 };
-
-/// Volumes begin at triangles of the water surface, so there has to be water between light and receiver.
-fn supports(facts: &SceneFacts) -> Result<(), String> {
-    let mut sets = facts.lights.beam_sets.iter();
-    match sets.find(|set| set.is_submerged()) {
-        None => Ok(()),
-        Some(set) => Err(format!(
-            "caustic volumes begin at the surface of the water, and light {} is under it",
-            set.light_index
-        )),
-    }
-}

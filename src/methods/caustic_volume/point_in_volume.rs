@@ -1,12 +1,26 @@
 //! Point in volume — light at the points of a band, from the caustic volumes of a beam set that each point lies in.
 
-use super::volume_bounds::{VOLUME_BOUNDS, VOLUME_FLUX, VOLUME_RAYS, Volumes, volumes};
 use super::{DENSITY, LINEAR, OFF, SHADOWS};
+use crate::gpu_struct;
 use crate::stages::light::{Light, light_uniform};
 use crate::stages::objects::{GEOMETRY, INSTANCES};
-use crate::stages::points::{POINT_IRRADIANCE, POINTS, size};
+use crate::stages::points::{POINT_IRRADIANCE, POINTS};
 use crate::stages::surface::{SURFACE, wanted_for_light};
+use crate::stages::volume_bounds::{
+    VOLUME_BOUNDS, VOLUME_FLUX, VOLUME_RAYS, Volumes, search_work, volumes_of_band,
+};
 use crate::stages::{Groups, Pass, Step, Steps};
+
+gpu_struct! {
+    /// How the light of a volume varies; fields are documented in the shader.
+    #[expect(missing_docs, reason = "documented in the WGSL twin")]
+    pub VolumeDensity = "VolumeDensity" {
+        is_linear: u32,
+        pad_0: u32,
+        pad_1: u32,
+        pad_2: u32,
+    }
+}
 
 /// See the module.
 pub static PASS: Pass = Pass {
@@ -23,7 +37,11 @@ pub static PASS: Pass = Pass {
     ],
     reads_if_present: &[],
     writes: &[&POINT_IRRADIANCE],
-    uniforms: &[("light", Light::LAYOUT), ("volumes", Volumes::LAYOUT)],
+    uniforms: &[
+        ("light", Light::LAYOUT),
+        ("volumes", Volumes::LAYOUT),
+        ("volume_density", VolumeDensity::LAYOUT),
+    ],
     views: &[],
     wanted: |facts| {
         wanted_for_light(facts)?;
@@ -37,28 +55,21 @@ pub static PASS: Pass = Pass {
         ))
     },
     steps: Steps::BandBeamSet(|facts, band, set| {
-        let Some([width, _]) = size(facts) else {
+        let has_shadows = SHADOWS.word(&facts.quality) != OFF;
+        let Some(volumes) = volumes_of_band(facts, band, set, has_shadows) else {
             return Vec::new();
         };
-        let volumes = Volumes {
-            width,
-            row_count: band.rows,
-            instance_count: facts.receivers.objects.len() as u32,
+        let density = VolumeDensity {
             is_linear: u32::from(DENSITY.word(&facts.quality) == LINEAR),
-            has_shadows: u32::from(SHADOWS.word(&facts.quality) != OFF),
-            ..volumes(facts, set)
+            ..VolumeDensity::default()
         };
         let uniforms = vec![
             ("light", light_uniform(facts, set)),
             ("volumes", bytemuck::bytes_of(&volumes).to_vec()),
+            ("volume_density", bytemuck::bytes_of(&density).to_vec()),
         ];
-        let groups = Groups::Direct([width.div_ceil(8), band.rows.div_ceil(8), 1]);
+        let groups = Groups::Direct([volumes.width.div_ceil(8), band.rows.div_ceil(8), 1]);
         vec![Step::compute("point_in_volume_main", groups, uniforms)]
     }),
-    // Each point descends through the levels of the blocks.
-    work: |facts| {
-        let points =
-            size(facts).map_or(0.0, |[width, height]| f64::from(width) * f64::from(height));
-        points * f64::from(facts.quality.water_cells).log2().max(1.0)
-    },
+    work: search_work,
 };

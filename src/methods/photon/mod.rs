@@ -180,9 +180,8 @@ pub static METHOD: Method = Method {
             dial: PHOTONS_PER_SIDE.name,
         }),
         leaves_out: LeavesOut {
-            shadows: false,
-            shadows_on_objects: false,
             further_layers: true,
+            ..LeavesOut::default()
         },
         ..MethodFacts::new(METHOD.name, Product::PointIrradiance)
     },

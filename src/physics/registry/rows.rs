@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::super::{
-    attenuation, coverage, fresnel, octahedral, refraction, sky, slicing, solid_angle, turns,
+    attenuation, coverage, fresnel, interpolated_flux, octahedral, refraction, sky, slicing,
+    solid_angle, turns,
 };
 use super::bounds::{self, SMALLEST_NORMAL, U};
 use super::{Domain, Spacing, Tolerance, Twin};
@@ -247,8 +248,66 @@ fn vector(v: DVec3, last: f64) -> Option<[f64; 4]> {
     Some([v.x, v.y, v.z, last])
 }
 
+/// Area of a cut of a caustic volume, as a share of the largest.
+const AREA: Domain = even(-1.0, 1.0, &[-1.0, -0.25, 0.0, -0.0, SMALLEST, 0.25, 1.0]);
+const DENSITY: Domain = decades(0.0, [1e-6, 1.0], 1.0, &[0.0, SMALLEST, 1e-6, 1.0]);
+
 /// All twins.
-pub const TWINS: [Twin; 20] = [
+pub const TWINS: [Twin; 23] = [
+    Twin {
+        name: "cubic_before",
+        file: "lib/interpolated_flux.wgsl",
+        domain: &[AREA, AREA, AREA, AREA, even(0.0, 1.0, &[0.0, 0.5, 1.0])],
+        call: "vec4f(cubic_before(vec4f(a[0], a[1], a[2], a[3]), a[4]), 0.0, 0.0, 0.0)",
+        original: |a| {
+            scalar(interpolated_flux::cubic_before(
+                [a[0], a[1], a[2], a[3]],
+                a[4],
+            ))
+        },
+        tolerance: tolerance(
+            16.0 * U,
+            0.0,
+            bounds::none,
+            "derived: three levels of four roundings and a sum of four, of coefficients up to 1",
+        ),
+    },
+    Twin {
+        name: "quotient_below_2",
+        file: "lib/interpolated_flux.wgsl",
+        domain: &[AREA, AREA],
+        call: "vec4f(quotient_below_2(a[0], a[1]), 0.0, 0.0, 0.0)",
+        original: |a| {
+            // At 2 rounding decides; both numbers flushed to 0 have the quotient 2.
+            if (a[0].abs() - 2.0 * a[1].abs()).abs() <= 4.0 * U * a[0].abs() {
+                return (a[0] == 0.0).then_some([2.0, 0.0, 0.0, 0.0]);
+            }
+            scalar(interpolated_flux::quotient_below_2(a[0], a[1]))
+        },
+        tolerance: tolerance(
+            SMALLEST_NORMAL,
+            6.0 * U,
+            bounds::none,
+            "derived: a quotient",
+        ),
+    },
+    Twin {
+        name: "interpolated_flux",
+        file: "lib/interpolated_flux.wgsl",
+        domain: &[AREA, AREA, AREA, DENSITY, DENSITY],
+        call: "vec4f(interpolated_flux(a[0], a[1], a[2], a[3], a[4]), 0.0, 0.0, 0.0)",
+        original: |a| {
+            scalar(interpolated_flux::interpolated_flux(
+                a[0], a[1], a[2], a[3], a[4],
+            ))
+        },
+        tolerance: tolerance(
+            SMALLEST_NORMAL,
+            0.0,
+            |a| 96.0 * U * (a[3] + a[4]),
+            "derived: five integrals of coefficients up to the sum of the densities; zeros are off by less than what that changes",
+        ),
+    },
     Twin {
         name: "plane_depth",
         file: "lib/slicing.wgsl",

@@ -1,15 +1,19 @@
 //! Volume bounds — the rays that bound the caustic volumes of a beam set, the flux of each volume, and a hierarchy of bounds over them: blocks of
 //! 2 × 2 cells of the water grid, blocks of 2 × 2 of those, and so on.
+//!
+//! For methods in which points find the volumes that they lie in (`shaders/shared/volume_search.wgsl`): points in the box of an object look
+//! at the blocks that meet it, and at no others.
 
+use super::beams::BEAMS;
+use super::gpu_values::vec4;
+use super::light::{Light, light_uniform};
+use super::points;
+use super::queues::in_columns;
+use super::surface::{SURFACE, wanted_for_light};
+use super::{Groups, Pass, Slot, Step, Steps};
 use crate::facts::SceneFacts;
 use crate::gpu_struct;
-use crate::graph::BeamSetRun;
-use crate::stages::beams::BEAMS;
-use crate::stages::gpu_values::vec4;
-use crate::stages::light::{Light, light_uniform};
-use crate::stages::queues::in_columns;
-use crate::stages::surface::{SURFACE, wanted_for_light};
-use crate::stages::{Groups, Pass, Slot, Step, Steps};
+use crate::graph::{BandRun, BeamSetRun};
 
 /// Cells along a side of a block of the first level, as in the shaders.
 const BLOCK_CELLS: u32 = 2;
@@ -30,10 +34,10 @@ gpu_struct! {
         row_count: u32,
         instance_count: u32,
         level: u32,
-        is_linear: u32,
         has_shadows: u32,
         top_m: f32,
         bottom_m: f32,
+        pad: u32,
     }
 }
 
@@ -64,7 +68,7 @@ pub static VOLUME_BOUNDS: Slot = Slot::buffer(
 /// See the module.
 pub static PASS: Pass = Pass {
     name: "volume_bounds",
-    shader: "methods/caustic_volume/volume_bounds.wgsl",
+    shader: "stages/volume_bounds.wgsl",
     reads: &[&SURFACE, &BEAMS],
     reads_if_present: &[],
     writes: &[&VOLUME_RAYS, &VOLUME_FLUX, &VOLUME_BOUNDS],
@@ -127,8 +131,47 @@ fn depths_m(facts: &SceneFacts) -> [f64; 2] {
     [-crest_m - margin_m, deepest_m + margin_m]
 }
 
+/// The uniform of the points of a band, which look for objects on their way to the water or do not; `None` without points.
+pub fn volumes_of_band(
+    facts: &SceneFacts,
+    band: BandRun,
+    set: BeamSetRun,
+    has_shadows: bool,
+) -> Option<Volumes> {
+    let [width, _] = points::size(facts)?;
+    Some(Volumes {
+        width,
+        row_count: band.rows,
+        instance_count: facts.receivers.objects.len() as u32,
+        has_shadows: u32::from(has_shadows),
+        ..volumes(facts, set)
+    })
+}
+
+/// Work of the search for the volumes of all points: each descends through the levels of the blocks.
+pub fn search_work(facts: &SceneFacts) -> f64 {
+    let points =
+        points::size(facts).map_or(0.0, |[width, height]| f64::from(width) * f64::from(height));
+    points * f64::from(facts.quality.water_cells).log2().max(1.0)
+}
+
+/// The reason against a scene with a light under water, whose rays bound no volumes.
+///
+/// # Errors
+/// The reason.
+pub fn starts_at_the_surface(facts: &SceneFacts) -> Result<(), String> {
+    let mut sets = facts.lights.beam_sets.iter();
+    match sets.find(|set| set.is_submerged()) {
+        None => Ok(()),
+        Some(set) => Err(format!(
+            "caustic volumes begin at the surface of the water, and light {} is under it",
+            set.light_index
+        )),
+    }
+}
+
 /// The uniform of a beam set; the fields about points are 0.
-pub(super) fn volumes(facts: &SceneFacts, set: BeamSetRun) -> Volumes {
+fn volumes(facts: &SceneFacts, set: BeamSetRun) -> Volumes {
     let mut volumes = Volumes::default();
     let sides = sides(facts.quality.water_cells);
     let mut first = 0;
