@@ -10,6 +10,7 @@
 pub mod caustic_volume;
 mod check;
 mod describe;
+pub mod irradiance_volume;
 pub mod level_map;
 pub mod photon;
 pub mod planes;
@@ -34,7 +35,14 @@ macro_rules! list {
     };
 }
 
-list![level_map, planes, volumetric, photon, caustic_volume];
+list![
+    level_map,
+    planes,
+    volumetric,
+    photon,
+    caustic_volume,
+    irradiance_volume,
+];
 
 /// A method.
 pub struct Method {
