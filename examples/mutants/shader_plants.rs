@@ -154,6 +154,26 @@ pub(crate) const ALL: &[ShaderPlant] = &[
         what: "triangles have one side",
     },
     ShaderPlant {
+        family: "field",
+        file: "shared/light_field.wgsl",
+        from: "field_place(f, p.xz + nearer.drift * fall_m.x)",
+        to: "field_place(f, p.xz - nearer.drift * fall_m.x)",
+        red: Red::Only(&["a_receiver_between_slices_under_a_low_sun"]),
+        what: "the look-up between slices goes the wrong way",
+    },
+    ShaderPlant {
+        family: "field",
+        file: "methods/irradiance_volume/field_slices.wgsl",
+        from: "c.t[k] = max(t, 0.0);",
+        to: "c.t[k] = max(-t, 0.0);",
+        red: Red::Only(&[
+            "slices_of_flat_water",
+            "water_at_the_side_of_the_slices",
+            "slices_filled_by_single_footprints",
+        ]),
+        what: "slices attenuate light over the water instead of under it",
+    },
+    ShaderPlant {
         family: "fold",
         file: "shared/footprint.wgsl",
         from: "y <= f.box.last.y; y++) { beside += deposit_row(target_map, f, y, triangle_flux); }",

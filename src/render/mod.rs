@@ -5,6 +5,7 @@ mod collect;
 mod commands;
 mod comparison;
 mod executor;
+mod fields;
 mod geometry;
 mod pieces;
 mod prepared;
@@ -34,7 +35,6 @@ use crate::plan::{self, Cached, FramePlan, Plan, Wanted};
 use crate::scene::projection::{Lens, Projection, rows};
 use crate::scene::{Output, ResolvedScene, SceneError};
 use crate::stages::Pass;
-use crate::stages::light_field::{self, LIGHT_FIELD};
 use crate::stages::objects::GEOMETRY;
 use crate::stages::points::Point;
 use crate::stats::{
@@ -391,14 +391,7 @@ impl Renderer {
         wanted: Wanted,
     ) -> Result<FramePlan, RenderError> {
         let plan = plan::plan(passes, facts, wanted, self)?;
-        let idle_fields = self.resident_field_bytes() - self.field_bytes_of(&plan);
-        if plan.report.peak_bytes.saturating_add(idle_fields) > self.memory_budget_bytes
-            && idle_fields > 0
-        {
-            self.fields.clear();
-            self.field_arena = None;
-            self.bind_groups.clear();
-        }
+        self.drop_idle_fields(&plan);
         let is_over = plan.report.peak_bytes > self.memory_budget_bytes;
         if !is_over || self.arena.is_none() || !plan::level_maps(facts).is_empty() {
             return Ok(plan);
@@ -422,18 +415,11 @@ impl Renderer {
             .level_maps
             .reserve(&plan::level_maps(facts))
             .map_err(|error| self.level_maps_over_budget(error))?;
-        let holds_fields = plan.graph.slot(&LIGHT_FIELD).is_some();
-        let missing_fields = if holds_fields {
-            let reserved = self.fields.reserve(&plan::fields(facts));
-            reserved.map_err(|error| self.fields_over_budget(error, facts))?
-        } else {
-            Vec::new()
-        };
-        let peak_bytes = plan.report.peak_bytes;
-        let idle_fields = self.resident_field_bytes() - self.field_bytes_of(plan);
-        let free_budget_bytes = self
-            .memory_budget_bytes
-            .saturating_sub(peak_bytes + idle_fields);
+        let missing_fields = self.reserve_fields(facts, plan).inspect_err(|_| {
+            self.level_maps.forget_unbuilt();
+        })?;
+        let peak_bytes = plan.report.peak_bytes + self.idle_field_bytes(plan);
+        let free_budget_bytes = self.memory_budget_bytes.saturating_sub(peak_bytes);
         self.bind_groups.begin_frame();
         let needs_geometry = plan.graph.slot(&GEOMETRY).is_some();
         let meshes = needs_geometry.then_some(resolved.meshes.as_slice());
@@ -482,37 +468,6 @@ impl Renderer {
         }
     }
 
-    /// Bytes of the arena of fields.
-    fn resident_field_bytes(&self) -> u64 {
-        self.field_arena.as_ref().map_or(0, wgpu::Buffer::size)
-    }
-
-    /// The same if the plan uses fields, else 0: then the arena is only held for other frames.
-    fn field_bytes_of(&self, plan: &FramePlan) -> u64 {
-        match plan.graph.slot(&LIGHT_FIELD) {
-            Some(_) => self.resident_field_bytes(),
-            None => 0,
-        }
-    }
-
-    fn fields_over_budget(&self, error: ArenaError, facts: &SceneFacts) -> RenderError {
-        let limit = if error.budget_bytes < bindable_bytes(&self.gpu) {
-            "CAUSTICA_FIELD_BUDGET_MIB"
-        } else {
-            "the device's limit for one binding"
-        };
-        let resolution = facts.field.as_ref().map(light_field::in_words);
-        RenderError::OverBudget {
-            what: format!(
-                "holding the fields of {} beam sets at once, each of {} ({limit})",
-                facts.lights.beam_sets.len(),
-                resolution.unwrap_or_default()
-            ),
-            needed_bytes: error.needed_bytes,
-            budget_bytes: error.budget_bytes,
-        }
-    }
-
     /// Frees what is cached for a mesh.
     pub fn forget_mesh(&mut self, id: &str) {
         self.level_maps.forget_mesh(id);
@@ -530,11 +485,6 @@ impl Renderer {
     /// Statistics of the level-map cache: hits, misses and evictions since the start; entries and bytes now.
     pub fn level_map_cache(&self) -> CacheStats {
         self.level_maps.stats()
-    }
-
-    /// Statistics of the kept fields of light: hits, misses and evictions since the start; entries and bytes now.
-    pub fn field_cache(&self) -> CacheStats {
-        self.fields.stats()
     }
 
     /// Kernels that were compiled since the start.

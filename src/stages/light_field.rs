@@ -8,9 +8,9 @@
 //! Of several beams on a surface that all of them face, the drift's mean gives the exact irradiance: with n for the normal each gives
 //! E (n_y − n_x s_x − n_z s_z), which is linear in the drift s.
 
-use super::Slot;
 use super::gpu_values::{vec2, vec4};
 use super::sums::ENERGY_TERMS;
+use super::{Pass, Slot};
 use crate::facts::{FieldBox, SceneFacts, field};
 use crate::gpu_struct;
 use crate::graph::{Clear, Origin};
@@ -109,6 +109,11 @@ pub fn in_words(field: &FieldBox) -> String {
         field.height,
         field.spacing_m()
     )
+}
+
+/// Whether a pass makes fields. Such passes take so long that their steps are submitted in batches.
+pub fn is_made_by(pass: &Pass) -> bool {
+    pass.writes.contains(&&LIGHT_FIELD)
 }
 
 /// Largest drift of a ray of a beam set: the flattest that refraction allows, at the steepest slope of the water.

@@ -170,6 +170,7 @@ cases! {
         slices_of_flat_water,
         slices_at_one_height,
         a_receiver_in_a_box_of_one_layer,
+        a_receiver_between_slices_under_a_low_sun,
         slices_with_one_wave_per_cell,
         slices_under_a_sun_at_10_degrees,
         a_sheet_that_folds_within_the_slices,

@@ -69,3 +69,4 @@ mod truths;
 mod view;
 mod water_maps;
 mod wide_sums;
+mod zz_trial;

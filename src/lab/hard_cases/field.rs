@@ -8,7 +8,7 @@ use super::case::Family::Field;
 use super::case::{Case, Failure};
 use super::obj::cuboid;
 use super::truths::{
-    SIDE, flat_error, flat_irradiance, pool, reference_error, sun, waves, with, worst,
+    SIDE, flat_error, flat_irradiance, pool, reference_error, seen_error, sun, waves, with, worst,
 };
 use crate::facts::Product;
 use crate::methods;
@@ -57,6 +57,37 @@ pub(super) const CASES: &[Case] = &[
         },
     ),
     Field.case(
+        "a_receiver_between_slices_under_a_low_sun",
+        "a look-up that does not follow the light, or goes the wrong way",
+        "relative L1 of a plate between two slices against the reference, over some pixels of a view",
+        0.03,
+        |b| {
+            let scene = with(
+                pool(),
+                &[
+                    ("/water/waves", waves()),
+                    ("/lights/0", sun(30.0, 30.0)),
+                    ("/floor/size_m", json!([3, 3])),
+                    ("/quality/water_cells", json!(384)),
+                    (
+                        "/objects",
+                        json!([{ "mesh": cuboid([2.0, 0.01, 2.0]), "translation_m": [0, -1.205, 0] }]),
+                    ),
+                    (
+                        "/camera",
+                        json!({ "kind": "orthographic", "position_m": [0, -0.1, 0], "target_m": [0, -1, 0],
+                                "up": [0, 0, -1], "height_m": 1 }),
+                    ),
+                    (
+                        "/output",
+                        json!({ "kind": "view", "width": 48, "height": 48, "layers": ["irradiance"], "format": "exr" }),
+                    ),
+                ],
+            );
+            seen_error(b, sliced(scene, 12, 256))
+        },
+    ),
+    Field.case(
         "slices_with_one_wave_per_cell",
         "footprints of a few huge beams that cross each other and the side of the box",
         CLOSURE,
@@ -79,7 +110,7 @@ pub(super) const CASES: &[Case] = &[
         "slices_under_a_sun_at_10_degrees",
         "slices that move far sideways from one to the next",
         REFERENCE,
-        0.02,
+        0.01,
         |b| {
             let scene = with(
                 pool(),
@@ -96,7 +127,7 @@ pub(super) const CASES: &[Case] = &[
         "a_sheet_that_folds_within_the_slices",
         "slices with one, two and three sheets of light, and between them",
         REFERENCE,
-        0.02,
+        0.01,
         |b| {
             let scene = with(
                 pool(),

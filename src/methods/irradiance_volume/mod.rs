@@ -59,7 +59,10 @@ pub static METHOD: Method = Method {
     supports,
     conformance: Conformance {
         sine_pool_error_at_256: 1e-2,
-        skips: &[],
+        skips: &[(
+            "slopes_of_20",
+            "waves so steep throw most of half a million beams over whole slices: with the default slices and texels that takes minutes",
+        )],
     },
 };
 
