@@ -69,4 +69,3 @@ mod truths;
 mod view;
 mod water_maps;
 mod wide_sums;
-mod zz_trial;

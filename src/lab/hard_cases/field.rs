@@ -60,7 +60,7 @@ pub(super) const CASES: &[Case] = &[
         "a_receiver_between_slices_under_a_low_sun",
         "a look-up that does not follow the light, or goes the wrong way",
         "relative L1 of a plate between two slices against the reference, over some pixels of a view",
-        0.03,
+        0.01,
         |b| {
             let scene = with(
                 pool(),
