@@ -48,6 +48,14 @@ pub struct RenderConfig {
         global = true
     )]
     pub level_map_budget_mib: u64,
+    /// GPU memory for kept fields of light, MiB.
+    #[arg(
+        long,
+        env = "CAUSTICA_FIELD_BUDGET_MIB",
+        default_value_t = 128,
+        global = true
+    )]
+    pub field_budget_mib: u64,
     /// Folder to which every assembled shader is written.
     #[arg(long, env = "CAUSTICA_SHADER_DUMP", global = true)]
     pub shader_dump: Option<std::path::PathBuf>,
@@ -75,6 +83,11 @@ impl RenderConfig {
     pub fn level_map_budget_bytes(&self) -> u64 {
         self.level_map_budget_mib.saturating_mul(1 << 20)
     }
+
+    /// GPU memory for kept fields of light, bytes. A device that cannot bind a buffer of this size gets less.
+    pub fn field_budget_bytes(&self) -> u64 {
+        self.field_budget_mib.saturating_mul(1 << 20)
+    }
 }
 
 /// Reads `--calibration`.
@@ -88,6 +101,7 @@ impl Default for RenderConfig {
             adapter: AdapterPolicy::Any,
             memory_budget_mib: 2048,
             level_map_budget_mib: 64,
+            field_budget_mib: 128,
             shader_dump: None,
             calibration: None,
             truth_cache: None,

@@ -23,7 +23,8 @@
 //!    No GPU is involved, and the peak memory is known before anything is allocated.
 //! 4. [`render::Renderer`] owns the device and the caches and runs the plan. It knows no method by name. What a pass does is in its
 //!    description ([`stages::Pass`]), and bindings are matched by name from the WGSL. Level maps live in [`cache::LevelMapCache`]: one
-//!    map serves every frame of an animation.
+//!    map serves every frame of an animation. Fields of light live in [`cache::FieldCache`]: one serves every frame in which only receivers or
+//!    the camera move.
 //! 5. [`frame::Frame`] holds linear f32 layers and [`stats::Stats`]. [`image::encode`] makes the file on the CPU, so that the
 //!    same request gives the same bytes.
 //!

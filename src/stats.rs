@@ -27,6 +27,9 @@ pub struct Stats {
     /// One entry per light and object whose light was placed by reference planes; absent otherwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planes: Vec<PlaneStats>,
+    /// One entry per beam set whose light was looked up in a kept field; absent otherwise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fields: Vec<FieldStats>,
     /// Estimated accuracy; absent unless `quality` requests it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<AccuracyStats>,
@@ -143,6 +146,9 @@ pub struct MemoryStats {
     pub allocated_bytes: Option<u64>,
     /// The level-map cache.
     pub level_maps: CacheStats,
+    /// The kept fields of light.
+    #[serde(default)]
+    pub fields: CacheStats,
 }
 
 /// A cache: hits, misses and evictions of this frame; entries and bytes after it.
@@ -203,6 +209,32 @@ pub struct PlaneStats {
     pub beams: u32,
     /// Beams that may reach the object: these are intersected with its planes.
     pub beams_kept: u32,
+}
+
+/// A field of light on horizontal slices.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FieldStats {
+    /// Index into `lights`.
+    pub light: u32,
+    /// Slices.
+    pub slices: u32,
+    /// Texels of a slice along x.
+    pub width: u32,
+    /// Texels of a slice along z.
+    pub height: u32,
+    /// Lower corner of its box, m.
+    pub min_m: [f64; 3],
+    /// Upper corner of its box, m.
+    pub max_m: [f64; 3],
+    /// GPU memory that it takes, bytes.
+    pub bytes: u64,
+    /// Whether it was kept from an earlier frame.
+    pub was_kept: bool,
+    /// Largest closure of the accounts of its slices: of each slice, |emitted − reflected − lost above it − beside it − through it| /
+    /// emitted.
+    pub closure: f64,
+    /// Flux down through each slice within the box, lowest first, W.
+    pub through_w: Vec<[f64; 3]>,
 }
 
 /// The estimated accuracy of a frame, and the dials chosen for it.

@@ -30,6 +30,7 @@ pub(crate) fn check(bytes: &[u8]) {
     assert!(!text.contains("NaN"), "{text}");
     let cold = NothingCached {
         arena_bytes: 64 << 20,
+        field_arena_bytes: 64 << 20,
     };
     let planned = [
         plan::plan_scene(&facts, plan::Wanted::Frame, &cold),

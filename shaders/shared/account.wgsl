@@ -1,4 +1,7 @@
-// The energy account of a workgroup, summed in shared memory before it is added to the global account.
+// The energy account of a workgroup, summed in shared memory before it is added to the global account. The importing pass
+// supplies `add_energy`, which does that.
+#import "shared/terms.wgsl"
+#import "shared/losses.wgsl"
 
 var<workgroup> account: array<atomic<u32>, 12>;
 

@@ -1,4 +1,5 @@
 // Where a beam lands: its receiver, and its contribution to the energy account.
+#import "shared/losses.wgsl"
 
 fn target_of(r: Receiver) -> Target {
     return Target(r.map_offset, i32(r.map_width), i32(r.map_height), light.channels, light.flux_scale);
@@ -28,13 +29,3 @@ fn is_whole(b: Beam) -> bool {
 fn hits_nothing(b: Beam) -> bool {
     return any(b.receiver == vec3i(NO_RECEIVER));
 }
-
-// A beam's contribution to the energy account.
-struct Losses {
-    missed: f32,
-    extinguished: vec3f,
-    left: vec3f,
-    landed: vec3f, // on maps that are not requested
-}
-
-const NO_LOSSES: Losses = Losses(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));

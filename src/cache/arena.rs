@@ -1,11 +1,11 @@
 //! Ranges of one buffer, handed out first-fit.
 
-/// The requested maps cannot fit.
+/// What a frame needs at once cannot fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "level maps of {needed_bytes} bytes are needed at once, the budget is {budget_bytes} bytes"
-)]
+#[error("{things} of {needed_bytes} bytes are needed at once, the budget is {budget_bytes} bytes")]
 pub struct ArenaError {
+    /// Name of what is kept.
+    pub things: &'static str,
     /// Bytes needed at once.
     pub needed_bytes: u64,
     /// The budget.

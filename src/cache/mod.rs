@@ -1,10 +1,10 @@
-//! The level-map cache: ranges of one buffer (`arena`), the place of each map and the order of eviction (`level_maps`), and requests to
-//! build maps before a frame needs them (`warm`).
+//! What stays on the GPU between frames, level maps and fields of light, each under a byte budget: ranges of one buffer (`arena`), the
+//! place of each thing and the order of eviction (`keeper`), and requests to build level maps before a frame needs them (`warm`).
 
 pub mod arena;
-pub mod level_maps;
+pub mod keeper;
 pub mod warm;
 
 pub use arena::{Arena, ArenaError};
-pub use level_maps::LevelMapCache;
+pub use keeper::{FieldCache, LevelMapCache};
 pub use warm::{WarmSun, WarmUp, WarmedMap};

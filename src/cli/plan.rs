@@ -43,6 +43,7 @@ pub fn run(args: &PlanArgs, config: &RenderConfig, limits: &Limits) -> Result<()
         // Plan as if nothing were cached: no device is opened, so this works on any machine.
         let empty = NothingCached {
             arena_bytes: config.level_map_budget_bytes(),
+            field_arena_bytes: config.field_budget_bytes(),
         };
         plan_scene(prepared.facts(), Wanted::Frame, &empty)
             .map_err(RenderError::from)?

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::field::FieldKey;
 use super::placement::LevelBox;
 use super::source::{self, AirLight, Grid, Source};
 use super::water::Band;
@@ -62,6 +63,8 @@ pub struct BeamSet {
     pub grid: Grid,
     /// The rectangle of water whose light can reach an object under water; `None` where there is no such object.
     pub objects_window: Option<Rect>,
+    /// Its kept field, for methods that make one.
+    pub field: Option<FieldKey>,
 }
 
 impl BeamSet {
@@ -248,6 +251,7 @@ impl SceneFacts {
             grid: Grid::over(window, &source),
             window,
             objects_window: window::objects_window(self, &source),
+            field: None,
         })
     }
 }

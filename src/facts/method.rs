@@ -7,7 +7,7 @@ pub enum Product {
     ReceiverMaps,
     /// Irradiance at points: pixels of a view, or texels of a map.
     PointIrradiance,
-    /// Light in the volume between surface and floor.
+    /// Light on horizontal slices between surface and floor, kept from frame to frame, from which the light at points is looked up.
     Field,
 }
 
@@ -38,6 +38,8 @@ pub struct MethodFacts {
     pub lands_in_view: bool,
     /// The cells of the water that it follows light from, if they are not `quality.water_cells`.
     pub own_cells: Option<OwnCells>,
+    /// Slices and texels of its field, for methods that make one.
+    pub field: Option<FieldGrid>,
     /// Effects that it leaves out; [`super::warnings`] has the messages.
     pub leaves_out: LeavesOut,
 }
@@ -57,6 +59,7 @@ impl MethodFacts {
             has_scratch_map: false,
             lands_in_view: false,
             own_cells: None,
+            field: None,
             leaves_out: LeavesOut::default(),
         }
     }
@@ -69,6 +72,15 @@ pub struct OwnCells {
     pub cells: u32,
     /// Name of the dial.
     pub dial: &'static str,
+}
+
+/// The resolution of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FieldGrid {
+    /// Horizontal slices, at least 2.
+    pub slices: u32,
+    /// Texels along the longer side of a slice.
+    pub texels: u32,
 }
 
 /// Effects that a method leaves out and others simulate.

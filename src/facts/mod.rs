@@ -5,6 +5,7 @@
 //!
 //! - [`water`]: surface and optics; [`lights`]: sources and their beam sets; [`receivers`]: floor and objects; [`output`]: camera, layers,
 //!   the receiver of a map;
+//! - [`field`]: the box in which a method keeps light between surface and floor;
 //! - `placement`: objects and the boxes of their level maps; `detail`: texels of those maps, by the object's size in the picture;
 //!   `source`: where light comes from; `window`, `lamp_window`: the water through which light reaches the receivers;
 //! - `legs`: how camera rays split at the water;
@@ -14,6 +15,7 @@
 
 mod blocked;
 mod detail;
+pub mod field;
 mod height_fields;
 mod lamp_window;
 mod legs;
@@ -32,6 +34,7 @@ pub mod window;
 use glam::{DVec2, DVec3};
 
 pub use self::legs::Legs;
+pub use self::field::{FieldBox, FieldKey};
 pub use self::lights::{BeamSet, LightsFacts, LitLight, MOST_LIGHTS, SkyFacts};
 pub use self::method::{MethodFacts, Product};
 pub use self::output::{CameraFacts, OutputFacts, WaterMapFacts};
@@ -53,6 +56,8 @@ pub struct SceneFacts {
     pub receivers: ReceiverFacts,
     /// The requested output.
     pub output: OutputFacts,
+    /// The box of the field, for methods that make one.
+    pub field: Option<FieldBox>,
     /// Properties of the method that the stages need.
     pub method: MethodFacts,
     /// The dials, reduced to what the output uses.
@@ -70,7 +75,10 @@ impl SceneFacts {
     /// Too many lights in the air, lights whose refracted rays are too flat to trace, and seas that are too choppy at this moment.
     pub fn of(resolved: &ResolvedScene, method: MethodFacts) -> Result<Self, SceneError> {
         let scene = &resolved.scene;
-        let origin_m = origin(resolved);
+        let origin_m = match method.product {
+            Product::Field if !scene_fixes_box(&scene.output) => field::origin(origin(resolved)),
+            _ => origin(resolved),
+        };
         let surface = water::surface_around(resolved, origin_m)?;
         let mut quality = scene.quality.clone();
         let output = OutputFacts::of(scene, origin_m);
@@ -84,6 +92,7 @@ impl SceneFacts {
             receivers: ReceiverFacts::of(resolved, origin_m, surface.max_height_m()),
             water: WaterFacts::of(&scene.water, surface),
             output,
+            field: None,
             method,
             quality,
             blends_float32: true,
@@ -91,7 +100,9 @@ impl SceneFacts {
         };
         facts.size_floor_map(&scene.output);
         facts.size_maps();
+        facts.place_field();
         facts.find_lights(resolved)?;
+        facts.name_fields(resolved);
         Ok(facts)
     }
 
@@ -122,6 +133,11 @@ impl SceneFacts {
     pub fn attenuates(&self) -> bool {
         self.water.attenuates()
     }
+}
+
+/// Whether the output alone decides which part of the floor is lit.
+fn scene_fixes_box(output: &Output) -> bool {
+    matches!(output, Output::IrradianceMap(map) if matches!(map.receiver, Receiver::Floor(_)))
 }
 
 /// The local origin: the middle of the output's region, on the water at rest.

@@ -26,6 +26,7 @@ impl SceneFacts {
         }
         let mut facts = self.clone();
         facts.water.surface = surface;
+        facts.name_fields(resolved);
         Some(facts)
     }
 }

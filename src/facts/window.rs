@@ -92,8 +92,12 @@ impl Lit {
     }
 }
 
-/// The receivers under water that the output needs light on: the floor's map and wet objects.
+/// The receivers under water that the output needs light on: the floor's map and wet objects; or the box of the field from which their
+/// light is looked up.
 pub(super) fn receivers(facts: &SceneFacts) -> Vec<Lit> {
+    if let Some(field) = &facts.field {
+        return vec![field.lit()];
+    }
     let mut all = Vec::new();
     if let (Some(map), Some(floor)) = (&facts.receivers.floor_map, &facts.receivers.floor) {
         all.push(Lit {

@@ -5,7 +5,7 @@
 use super::{GpuContext, GpuError, readback};
 
 /// Largest number of timed passes per frame. A label with any later pass gets no time at all.
-const MAX_SPANS: u32 = 1024;
+const MAX_SPANS: u32 = 2048;
 
 /// Timestamps around the passes of one frame.
 #[derive(Debug)]

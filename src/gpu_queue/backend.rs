@@ -51,6 +51,11 @@ pub trait RenderBackend {
     /// The level-map cache since the start (hits, misses, evictions) and now (entries, bytes).
     fn level_map_cache(&self) -> CacheStats;
 
+    /// The kept fields of light, likewise.
+    fn field_cache(&self) -> CacheStats {
+        CacheStats::default()
+    }
+
     /// Called about once a second while there is nothing to do. If it reports a lost device, the queue rebuilds the backend
     /// before the next request arrives.
     fn idle(&mut self) -> Result<(), GpuError> {
@@ -102,6 +107,10 @@ impl RenderBackend for Renderer {
 
     fn level_map_cache(&self) -> CacheStats {
         Renderer::level_map_cache(self)
+    }
+
+    fn field_cache(&self) -> CacheStats {
+        Renderer::field_cache(self)
     }
 
     fn idle(&mut self) -> Result<(), GpuError> {

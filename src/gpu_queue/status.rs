@@ -34,6 +34,8 @@ pub struct GpuStatus {
     pub losses: u64,
     /// The level-map cache after the last job: counts since the start, over all devices, and what it holds now.
     pub level_maps: CacheStats,
+    /// The kept fields of light, likewise.
+    pub fields: CacheStats,
     /// Typical wall time of a job, s; 0 before the first.
     pub job_s: f64,
 }

@@ -48,8 +48,8 @@ pub(super) struct Worker {
     forgotten: Forgotten,
     held: Held,
     last_try: Instant,
-    /// Counts of the level-map caches of earlier devices.
-    gone: CacheStats,
+    /// Counts of the caches of earlier devices.
+    gone: [CacheStats; 2],
 }
 
 impl Worker {
@@ -67,7 +67,7 @@ impl Worker {
             forgotten,
             held,
             last_try: Instant::now(),
-            gone: CacheStats::default(),
+            gone: [CacheStats::default(), CacheStats::default()],
         }
     }
 
@@ -91,12 +91,12 @@ impl Worker {
             let mut backend = (self.factory)()?;
             let check = backend.self_check()?;
             let (adapter, dial_basis) = (backend.adapter(), backend.dial_basis());
-            let cache = backend.level_map_cache();
-            Ok::<_, GpuError>((adapter, dial_basis, check, cache, backend))
+            let caches = caches(&*backend);
+            Ok::<_, GpuError>((adapter, dial_basis, check, caches, backend))
         }))
         .unwrap_or_else(|panic| Err(GpuError::Validation(panic_message(&*panic))));
         match opened {
-            Ok((adapter, dial_basis, check, cache, backend)) => {
+            Ok((adapter, dial_basis, check, caches, backend)) => {
                 let check = judged(check);
                 tracing::info!(
                     adapter = adapter.name,
@@ -110,7 +110,7 @@ impl Worker {
                     status.adapter = Some(adapter);
                     status.dial_basis = dial_basis;
                     status.self_check = Some(check);
-                    status.level_maps = self.since_the_start(&cache);
+                    [status.level_maps, status.fields] = self.since_the_start(&caches);
                 });
                 Some(backend)
             }
@@ -132,9 +132,11 @@ impl Worker {
             status.state = GpuState::Lost(why.to_owned());
             status.self_check = None;
             status.losses += 1;
-            // The cache is lost with the device; its counts are kept.
-            self.gone = status.level_maps.clone();
-            (status.level_maps.entries, status.level_maps.bytes) = (0, 0);
+            // The caches are lost with the device; their counts are kept.
+            self.gone = [status.level_maps.clone(), status.fields.clone()];
+            for cache in [&mut status.level_maps, &mut status.fields] {
+                (cache.entries, cache.bytes) = (0, 0);
+            }
         });
         discard(backend);
         *backend = self.open();
@@ -226,36 +228,39 @@ impl Worker {
         });
     }
 
-    /// The cache statistics of the present device, plus the counts of earlier devices.
-    fn since_the_start(&self, cache: &CacheStats) -> CacheStats {
-        CacheStats {
-            hits: self.gone.hits + cache.hits,
-            misses: self.gone.misses + cache.misses,
-            evictions: self.gone.evictions + cache.evictions,
-            ..cache.clone()
-        }
+    /// The statistics of the present device's caches, plus the counts of earlier devices.
+    fn since_the_start(&self, caches: &[CacheStats; 2]) -> [CacheStats; 2] {
+        std::array::from_fn(|k| CacheStats {
+            hits: self.gone[k].hits + caches[k].hits,
+            misses: self.gone[k].misses + caches[k].misses,
+            evictions: self.gone[k].evictions + caches[k].evictions,
+            ..caches[k].clone()
+        })
     }
 
-    /// Frees what is cached for deleted meshes, and publishes the state of the cache.
+    /// Frees what is cached for deleted meshes, and publishes the state of the caches.
     fn after_work(&self, backend: &mut Box<dyn RenderBackend>) {
         let forgotten = &self.forgotten;
-        let cache = catch_unwind(AssertUnwindSafe(|| {
+        let found = catch_unwind(AssertUnwindSafe(|| {
             forget(&mut **backend, forgotten);
-            backend.level_map_cache()
+            caches(&**backend)
         }));
-        match cache {
-            Ok(cache) => {
-                let cache = self.since_the_start(&cache);
-                self.publish.send_modify(|status| status.level_maps = cache);
+        match found {
+            Ok(found) => {
+                let found = self.since_the_start(&found);
+                self.publish
+                    .send_modify(|status| [status.level_maps, status.fields] = found);
             }
             Err(panic) => {
-                tracing::error!(
-                    panic = panic_message(&*panic),
-                    "the level-map cache panicked"
-                );
+                tracing::error!(panic = panic_message(&*panic), "the caches panicked");
             }
         }
     }
+}
+
+/// The statistics of a backend's caches: level maps, fields of light.
+fn caches(backend: &dyn RenderBackend) -> [CacheStats; 2] {
+    [backend.level_map_cache(), backend.field_cache()]
 }
 
 /// Runs a job once and catches its panics.

@@ -92,6 +92,13 @@ impl Metrics {
         counter!("caustica_level_map_cache_hits_total").absolute(cache.hits);
         counter!("caustica_level_map_cache_misses_total").absolute(cache.misses);
         counter!("caustica_level_map_cache_evictions_total").absolute(cache.evictions);
+        let fields = &status.fields;
+        counter!("caustica_field_cache_hits_total").absolute(fields.hits);
+        counter!("caustica_field_cache_misses_total").absolute(fields.misses);
+        counter!("caustica_field_cache_evictions_total").absolute(fields.evictions);
+        gauge!("caustica_field_cache_bytes").set(fields.bytes as f64);
+        gauge!("caustica_field_cache_entries").set(fields.entries as f64);
+        gauge!("caustica_field_cache_budget_bytes").set(fields.budget_bytes as f64);
         counter!("caustica_device_losses_total").absolute(status.losses);
         counter!(LOG_LINES_DROPPED).absolute(crate::log::dropped());
         gauge!("caustica_level_map_cache_bytes").set(cache.bytes as f64);
@@ -168,6 +175,26 @@ fn describe() {
     describe_counter!(
         "caustica_level_map_cache_evictions_total",
         "Level maps evicted to make room."
+    );
+    describe_counter!(
+        "caustica_field_cache_hits_total",
+        "Fields of light found in the cache."
+    );
+    describe_counter!("caustica_field_cache_misses_total", "Fields of light made.");
+    describe_counter!(
+        "caustica_field_cache_evictions_total",
+        "Fields of light evicted to make room."
+    );
+    describe_gauge!(
+        "caustica_field_cache_bytes",
+        Unit::Bytes,
+        "Memory of kept fields of light."
+    );
+    describe_gauge!("caustica_field_cache_entries", "Kept fields of light.");
+    describe_gauge!(
+        "caustica_field_cache_budget_bytes",
+        Unit::Bytes,
+        "Maximum memory of kept fields of light."
     );
     describe_counter!(
         "caustica_device_losses_total",

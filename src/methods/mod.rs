@@ -10,6 +10,7 @@
 pub mod caustic_volume;
 mod check;
 mod describe;
+pub mod irradiance_volume;
 pub mod level_map;
 pub mod photon;
 pub mod planes;
@@ -41,7 +42,8 @@ list![
     volumetric,
     photon,
     caustic_volume,
-    sub_volume
+    sub_volume,
+    irradiance_volume,
 ];
 
 /// A method.

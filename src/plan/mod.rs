@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::facts::placement::LevelMapKey;
-use crate::facts::{Product, SceneFacts};
+use crate::facts::{FieldKey, Product, SceneFacts};
 use crate::graph::{self, Allocation, Clear, PlanError, Planned, PlannedSlot as HeldSlot, Scope};
 use crate::methods;
 use crate::scene::LayerName;
@@ -19,6 +19,7 @@ use crate::stages::camera_hits::{VISIBLE_ALBEDO, VISIBLE_DEPTH};
 use crate::stages::estimate::DIFFERENCES;
 use crate::stages::irradiance::IRRADIANCE;
 use crate::stages::level_map::LEVEL_MAPS;
+use crate::stages::light_field::LIGHT_FIELD;
 use crate::stages::maps::MapLayout;
 use crate::stages::points::{POINT_IRRADIANCE, POINTS, band_rows, size};
 use crate::stages::shade::RADIANCE;
@@ -105,13 +106,19 @@ pub trait Cached {
     fn has_level_map(&self, key: &LevelMapKey) -> bool;
     /// Bytes that the level-map arena holds, or would hold for maps of `wanted_bytes` in all.
     fn arena_bytes(&self, wanted_bytes: u64) -> u64;
+    /// Whether this field of light is kept.
+    fn has_field(&self, key: &FieldKey) -> bool;
+    /// Bytes that the arena of fields holds, or would hold for fields of `wanted_bytes` in all.
+    fn field_arena_bytes(&self, wanted_bytes: u64) -> u64;
 }
 
-/// An empty GPU with room for level maps of `arena_bytes`; for plans without a device.
+/// An empty GPU with room for level maps and fields; for plans without a device.
 #[derive(Clone, Copy, Debug)]
 pub struct NothingCached {
     /// Size of the level-map arena.
     pub arena_bytes: u64,
+    /// Size of the arena of fields.
+    pub field_arena_bytes: u64,
 }
 
 impl Cached for NothingCached {
@@ -126,9 +133,21 @@ impl Cached for NothingCached {
             self.arena_bytes
         }
     }
+
+    fn has_field(&self, _key: &FieldKey) -> bool {
+        false
+    }
+
+    fn field_arena_bytes(&self, wanted_bytes: u64) -> u64 {
+        if wanted_bytes == 0 {
+            0
+        } else {
+            self.field_arena_bytes
+        }
+    }
 }
 
-/// A GPU that holds every level map; for plans of warm frames.
+/// A GPU that holds every level map and field; for plans of warm frames.
 #[derive(Clone, Copy, Debug)]
 pub struct WarmCache;
 
@@ -138,6 +157,14 @@ impl Cached for WarmCache {
     }
 
     fn arena_bytes(&self, wanted_bytes: u64) -> u64 {
+        wanted_bytes
+    }
+
+    fn has_field(&self, _key: &FieldKey) -> bool {
+        true
+    }
+
+    fn field_arena_bytes(&self, wanted_bytes: u64) -> u64 {
         wanted_bytes
     }
 }
@@ -170,8 +197,8 @@ pub fn awaited_layers(facts: &SceneFacts) -> BTreeSet<&'static Slot> {
     }
     if facts.output.camera.is_none() {
         return BTreeSet::from([match facts.method.product {
-            Product::PointIrradiance => &POINT_IRRADIANCE,
-            Product::ReceiverMaps | Product::Field => &IRRADIANCE,
+            Product::PointIrradiance | Product::Field => &POINT_IRRADIANCE,
+            Product::ReceiverMaps => &IRRADIANCE,
         }]);
     }
     let layers = facts.output.layers.iter();
@@ -200,6 +227,17 @@ pub fn level_maps(facts: &SceneFacts) -> Vec<&LevelMapKey> {
         .collect()
 }
 
+/// The distinct fields of light that a scene needs, in the order of the beam sets.
+pub fn fields(facts: &SceneFacts) -> Vec<&FieldKey> {
+    let mut seen = BTreeSet::new();
+    let keys = facts
+        .lights
+        .beam_sets
+        .iter()
+        .filter_map(|set| set.field.as_ref());
+    keys.filter(|key| seen.insert(*key)).collect()
+}
+
 /// Plans `facts` from `passes`, usually those of the [method's pipeline](methods::Method::pipeline).
 ///
 /// # Errors
@@ -216,14 +254,21 @@ pub fn plan(
         .iter()
         .filter(|key| !cached.has_level_map(key))
         .count();
-    let available = if missing == 0 {
-        BTreeSet::from([&LEVEL_MAPS])
-    } else {
-        BTreeSet::new()
-    };
+    let fields = fields(facts);
+    let field_bytes: u64 = fields.iter().map(|key| key.bytes).sum();
+    let missing_fields = fields.iter().filter(|key| !cached.has_field(key)).count();
+    let mut available = BTreeSet::new();
+    if missing == 0 {
+        available.insert(&LEVEL_MAPS);
+    }
+    if missing_fields == 0 && !fields.is_empty() {
+        available.insert(&LIGHT_FIELD);
+    }
     let kept_bytes = |slot: &Slot| {
         if *slot == LEVEL_MAPS {
             cached.arena_bytes(level_map_bytes)
+        } else if *slot == LIGHT_FIELD {
+            cached.field_arena_bytes(field_bytes)
         } else {
             slot.bytes(facts)
         }
@@ -231,7 +276,7 @@ pub fn plan(
     let mut awaited = awaited(facts, wanted);
     awaited.retain(|slot| **slot != ENERGY || passes.iter().any(|p| p.writes.contains(slot)));
     let graph = graph::plan(passes, facts, &awaited, &available, kept_bytes)?;
-    let report = report(&graph, facts, wanted, missing);
+    let report = report(&graph, facts, wanted, [missing, missing_fields]);
     Ok(FramePlan {
         wanted,
         graph,
@@ -243,7 +288,7 @@ fn report(
     graph: &Planned<Caustica>,
     facts: &SceneFacts,
     wanted: Wanted,
-    missing_level_maps: usize,
+    missing: [usize; 2],
 ) -> Plan {
     let absent = graph.absent.iter().map(|(pass, reason)| AbsentPass {
         name: pass.name.to_owned(),
@@ -263,7 +308,7 @@ fn report(
             .map(|(pass, reason)| PlannedPass {
                 name: pass.name.to_owned(),
                 reason: reason.clone(),
-                runs: runs(pass.steps.scope(), facts, missing_level_maps),
+                runs: runs(pass.steps.scope(), facts, missing),
             })
             .collect(),
         absent: absent.chain(absent_effects(facts)).collect(),
@@ -361,7 +406,7 @@ pub fn readback_bytes(facts: &SceneFacts) -> u64 {
 pub fn is_made_in_bands(facts: &SceneFacts) -> bool {
     facts.output.camera.is_some()
         || facts.output.is_water_map()
-        || facts.method.product == Product::PointIrradiance
+        || facts.method.product != Product::ReceiverMaps
 }
 
 /// Bytes per pixel of a slot that layers are read from.
@@ -423,8 +468,8 @@ fn absent_effects(facts: &SceneFacts) -> Vec<AbsentPass> {
     absent
 }
 
-/// How often a pass of this scope runs.
-fn runs(scope: Scope, facts: &SceneFacts, missing_level_maps: usize) -> u32 {
+/// How often a pass of this scope runs, given how many level maps and fields are missing.
+fn runs(scope: Scope, facts: &SceneFacts, [missing_level_maps, missing_fields]: [usize; 2]) -> u32 {
     let narrow = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
     let sets = narrow(facts.lights.beam_sets.len());
     let bands = size(facts).map_or(0, |[width, height]| {
@@ -432,6 +477,7 @@ fn runs(scope: Scope, facts: &SceneFacts, missing_level_maps: usize) -> u32 {
     });
     match scope {
         Scope::LevelMap => narrow(missing_level_maps),
+        Scope::BeamSet | Scope::FineBeamSet if facts.field.is_some() => narrow(missing_fields),
         Scope::BeamSet | Scope::FineBeamSet | Scope::BeamSetMaps | Scope::CoarseBeamSet => sets,
         Scope::Frame | Scope::Estimate => 1,
         Scope::Band => bands,

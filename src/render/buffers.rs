@@ -12,6 +12,7 @@ use crate::plan::{self, EMPTY_LIST_BYTES, FramePlan, INDIRECT_BYTES};
 use crate::scene::ResolvedScene;
 use crate::stages::estimate::{self, COMPARISONS, Comparison};
 use crate::stages::level_map::LEVEL_MAPS;
+use crate::stages::light_field::{self, LIGHT_FIELD, LIGHT_FIELDS};
 use crate::stages::objects::{GEOMETRY, INSTANCES};
 use crate::stages::receivers::{self, ALL_RECEIVERS, RECEIVERS, Receiver};
 use crate::stages::surface::WAVES;
@@ -257,6 +258,8 @@ impl Renderer {
             geometry.buffer.clone()
         } else if *slot == LEVEL_MAPS {
             self.arena_buffer()
+        } else if *slot == LIGHT_FIELD {
+            self.field_arena_buffer()
         } else {
             return None;
         };
@@ -327,6 +330,14 @@ impl Renderer {
                 .collect();
             bytemuck::cast_slice(&all).to_vec()
         });
+        write(&LIGHT_FIELDS, &|| {
+            let first_word = |set: usize| {
+                let key = facts.lights.beam_sets[set].field.as_ref();
+                let offset = key.and_then(|key| self.fields.offset(key));
+                u32::try_from(offset.unwrap_or_default() / 4).unwrap_or(u32::MAX)
+            };
+            bytemuck::cast_slice(&light_field::light_fields(facts, first_word)).to_vec()
+        });
         write(&COMPARISONS, &|| {
             let compared = estimate::compared(facts);
             let all: Vec<Comparison> = compared.iter().map(|map| map.comparison).collect();
@@ -353,16 +364,20 @@ impl Renderer {
 
     pub(super) fn arena_buffer(&mut self) -> wgpu::Buffer {
         let size = self.level_maps.stats().budget_bytes;
-        self.arena
-            .get_or_insert_with(|| {
-                self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("level maps"),
-                    size,
-                    usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-                    mapped_at_creation: false,
-                })
-            })
-            .clone()
+        let device = &self.gpu.device;
+        let arena = self
+            .arena
+            .get_or_insert_with(|| arena(device, "level maps", size));
+        arena.clone()
+    }
+
+    fn field_arena_buffer(&mut self) -> wgpu::Buffer {
+        let size = self.fields.stats().budget_bytes;
+        let device = &self.gpu.device;
+        let made = self
+            .field_arena
+            .get_or_insert_with(|| arena(device, "fields of light", size));
+        made.clone()
     }
 
     pub(super) fn place_uniforms<'a>(
@@ -372,4 +387,14 @@ impl Renderer {
         let placed = uniforms.map(|(name, bytes)| (*name, self.uniforms.get(&self.gpu, bytes)));
         PlacedUniforms(placed.collect())
     }
+}
+
+/// The buffer in which a cache keeps its things.
+fn arena(device: &wgpu::Device, label: &'static str, size: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    })
 }

@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use super::RenderError;
 use crate::accuracy::estimate::{Compared, FrameComparison, estimate_error};
-use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
 use crate::facts::unfollowed;
 use crate::facts::warnings::{SCATTERING_NOT_FOLLOWED, WAVES_UNDERSAMPLED};
+use crate::facts::{FieldKey, SceneFacts};
 use crate::frame::{FAR_DEPTH_M, Layer};
 use crate::plan;
 use crate::scene::{LayerName, Receiver};
@@ -22,7 +22,7 @@ use crate::stages::shade::RADIANCE;
 use crate::stages::sums::ENERGY_TERMS;
 use crate::stages::water_map::WATER_MAP;
 use crate::stages::{Slot, estimate, light, term};
-use crate::stats::{EnergyAccount, PlaneStats, Warning};
+use crate::stats::{EnergyAccount, FieldStats, PlaneStats, Warning};
 
 /// Bytes of one light's energy account.
 pub(super) const ACCOUNT_BYTES: u64 = 8 * ENERGY_TERMS;
@@ -234,6 +234,43 @@ pub(super) fn planes(facts: &SceneFacts, counts: &[Vec<[u32; 4]>]) -> Vec<PlaneS
         }
     }
     all
+}
+
+/// Statistics of the kept fields, from the raw accounts of the slices of each beam set.
+pub(super) fn fields(
+    facts: &SceneFacts,
+    accounts: &[Vec<u64>],
+    built: &[FieldKey],
+) -> Vec<FieldStats> {
+    let Some(field) = &facts.field else {
+        return Vec::new();
+    };
+    let world = |at: DVec3| (at + facts.origin_m).to_array();
+    let sets = facts.lights.beam_sets.iter().zip(accounts).enumerate();
+    sets.map(|(index, (set, accounts))| {
+        let mut closure_of_all = 0.0_f64;
+        let mut through_w = Vec::new();
+        for terms in accounts.chunks_exact(ENERGY_TERMS as usize) {
+            let mut sums = LightSums::new(set.light_index);
+            sums.add(facts, index, terms);
+            closure_of_all = closure_of_all.max(closure(&sums.account));
+            through_w.push(sums.account.landed_w);
+        }
+        let [low, high] = [field.rect.min, field.rect.max];
+        FieldStats {
+            light: set.light_index,
+            slices: field.slices,
+            width: field.width,
+            height: field.height,
+            min_m: world(DVec3::new(low.x, field.bottom_m, low.y)),
+            max_m: world(DVec3::new(high.x, field.top_m, high.y)),
+            bytes: set.field.as_ref().map_or(0, |key| key.bytes),
+            was_kept: set.field.as_ref().is_some_and(|key| !built.contains(key)),
+            closure: closure_of_all,
+            through_w,
+        }
+    })
+    .collect()
 }
 
 /// The warning that a method does not conserve energy: the difference between the landed flux and the flux that the rays carry.

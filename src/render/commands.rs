@@ -3,12 +3,14 @@
 use std::time::Instant;
 
 use super::buffers::FrameSlots;
+use super::pieces::Batch;
 use super::{RenderError, Renderer, ms_since};
 use crate::facts::SceneFacts;
 use crate::gpu::kernel::RasterTargets;
 use crate::gpu::pieces::PIECE;
 use crate::gpu::{Binding, GpuError};
 use crate::graph::{Draw, View};
+use crate::stages::light_field;
 use crate::stages::sums::FLUX;
 use crate::stages::{Caustica, Groups, Pass, Run, Step, Work};
 use crate::stats::TimeStats;
@@ -124,12 +126,16 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         // Passes that do not touch the sums use one kernel for both widths.
         let wide_sums = run.has_wide_sums() && pass.touches(&FLUX);
+        let mut batch = light_field::is_made_by(pass).then(Batch::default);
         for step in steps_of(pass, facts, run)? {
             match &step.work {
                 Work::Compute(groups) => {
                     self.dispatch(encoder, pass, facts, &step, (*groups, wide_sums), slots)?;
                 }
                 Work::Draw(draw) => self.draw(encoder, pass, &step, draw, slots)?,
+            }
+            if let Some(batch) = &mut batch {
+                self.end_step(encoder, pass.name, batch)?;
             }
         }
         Ok(())

@@ -12,8 +12,8 @@ use super::commands::{Recording, steps_of};
 use super::comparison::{Comparison, ComparisonPasses};
 use super::geometry::Geometry;
 use super::{RenderError, Renderer, RunResult, check_cancelled, collect, ms_since, timed};
-use crate::facts::SceneFacts;
 use crate::facts::placement::{LevelBox, LevelMapKey};
+use crate::facts::{FieldKey, SceneFacts};
 use crate::gpu::{GpuError, readback};
 use crate::graph::plan::Phase;
 use crate::graph::{BandRun, BeamSetRun, Scope};
@@ -21,19 +21,21 @@ use crate::plan::{self, FramePlan, Wanted};
 use crate::scene::{LayerName, ResolvedScene};
 use crate::stages::irradiance::IRRADIANCE;
 use crate::stages::level_map::LevelMapRun;
+use crate::stages::light_field::SLICE_ENERGY;
 use crate::stages::points::{POINTS, Point, band_rows, size};
 use crate::stages::reference_planes::PLANE_COUNTS;
 use crate::stages::shade::RADIANCE;
-use crate::stages::sums::{ENERGY, FLUX};
+use crate::stages::sums::{ENERGY, ENERGY_TERMS, FLUX};
 use crate::stages::{Pass, Run, light};
 use crate::stats::{AccuracyStats, TimeStats};
 
-/// A frame to be run: its scene's facts, its plan, the level maps to build, and its cancellation.
+/// A frame to be run: its scene's facts, its plan, the level maps and fields to build, and its cancellation.
 #[derive(Clone, Copy)]
 pub(super) struct Job<'a> {
     pub(super) facts: &'a SceneFacts,
     pub(super) plan: &'a FramePlan,
     pub(super) missing: &'a [LevelMapKey],
+    pub(super) missing_fields: &'a [FieldKey],
     pub(super) cancel: &'a CancellationToken,
 }
 
@@ -50,6 +52,7 @@ impl Renderer {
             + self.gpu.take_readback_peak()
             + plan::differences_beside(job.facts)
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
+            + self.field_bytes_of(job.plan)
             + self.geometry.in_use().map_or(0, Geometry::bytes);
         let report = self
             .watches_allocator
@@ -88,6 +91,7 @@ impl Renderer {
             layers: BTreeMap::new(),
             energy,
             planes: collect::planes(facts, &sums.plane_counts),
+            fields: collect::fields(facts, &sums.slice_accounts, job.missing_fields),
             points: Vec::new(),
             accuracy: None,
             warnings,
@@ -166,18 +170,34 @@ impl Renderer {
         };
         for index in 0..sets {
             check_cancelled(job.cancel)?;
+            let field = facts.lights.beam_sets[index].field.as_ref();
+            if field.is_some_and(|key| self.fields.contains(key)) {
+                continue;
+            }
             let reruns = self.wide_sum_reruns;
             // Only the comparison follows the last beam set.
             let next = comparison.as_mut().filter(|_| index + 1 == sets);
             let next = next.map(|comparison| (comparison, comparing));
             let passes = (passes.as_slice(), maps.as_slice());
             let sums = self.run_beam_set(facts, index, passes, next, slots, time_ms)?;
+            if let (Some(key), Some(accounts)) = (field, sums.slice_accounts) {
+                self.fields.built(key, accounts);
+            }
             all.accounts.extend(sums.account);
             all.plane_counts.extend(sums.plane_counts);
             all.wide.push(sums.wide);
             if self.wide_sum_reruns > reruns {
                 let light = facts.lights.beam_sets[index].light_index;
                 all.widened.push(collect::widened(light));
+            }
+        }
+        // The account of a kept field is kept with it. What falls through its lowest slice has landed.
+        for set in &facts.lights.beam_sets {
+            let accounts = set.field.as_ref().and_then(|key| self.fields.note(key));
+            if let Some(accounts) = accounts {
+                all.accounts
+                    .extend(accounts.iter().take(ENERGY_TERMS as usize));
+                all.slice_accounts.push(accounts.clone());
             }
         }
         Ok(all)
@@ -197,6 +217,7 @@ impl Renderer {
     ) -> Result<RawSums, RenderError> {
         let energy = slots.held_buffer(&ENERGY);
         let planes = slots.held_buffer(&PLANE_COUNTS);
+        let slices = slots.held_buffer(&SLICE_ENERGY);
         let mut wide_sums = light::needs_wide_sums(facts, index);
         loop {
             let run = Run::BeamSet(BeamSetRun { index, wide_sums });
@@ -209,6 +230,10 @@ impl Renderer {
                 .map(|(buffer, _)| readback::stage(&self.gpu, &mut encoder, buffer, ACCOUNT_BYTES));
             let staged_counts = planes.map(|(buffer, _)| {
                 let bytes = PLANE_COUNTS.bytes(facts);
+                readback::stage(&self.gpu, &mut encoder, buffer, bytes)
+            });
+            let staged_slices = slices.map(|(buffer, _)| {
+                let bytes = SLICE_ENERGY.bytes(facts);
                 readback::stage(&self.gpu, &mut encoder, buffer, bytes)
             });
             let submitted = self.send(encoder, started, time_ms);
@@ -229,6 +254,8 @@ impl Renderer {
                 staged.map(|staged| staged.read(&self.gpu)).transpose()?;
             let counts = staged_counts.map(|staged| staged.read(&self.gpu));
             let counts: Option<Vec<[u32; 4]>> = counts.transpose()?;
+            let slice_accounts = staged_slices.map(|staged| staged.read(&self.gpu));
+            let slice_accounts: Option<Vec<u64>> = slice_accounts.transpose()?;
             time_ms.readback += ms_since(started);
             // Without flux sums, what is missing in the account is the method's own.
             let has_sums = slots.held_buffer(&FLUX).is_some();
@@ -245,6 +272,7 @@ impl Renderer {
             let sums = RawSums {
                 account: account.unwrap_or_default(),
                 plane_counts: counts,
+                slice_accounts,
                 wide: wide_sums,
             };
             // Sums are added to the maps only after it is known that they did not wrap.
@@ -517,7 +545,7 @@ impl Renderer {
             let mut encoder = self.encoder("level map");
             self.record_all(&mut encoder, &passes, job.facts, run, slots, time_ms)?;
             self.submit(encoder, started, time_ms)?;
-            self.level_maps.built(key);
+            self.level_maps.built(key, ());
         }
         Ok(())
     }
@@ -528,6 +556,8 @@ struct RawSums {
     /// Its raw account; empty if no pass keeps one.
     account: Vec<u64>,
     plane_counts: Option<Vec<[u32; 4]>>,
+    /// The raw account of each slice of its field, if it has one.
+    slice_accounts: Option<Vec<u64>>,
     /// Whether its flux was summed in 64 bits.
     wide: bool,
 }
@@ -537,6 +567,8 @@ struct RawSums {
 struct BeamSetSums {
     accounts: Vec<u64>,
     plane_counts: Vec<Vec<[u32; 4]>>,
+    /// The raw accounts of the slices of each field.
+    slice_accounts: Vec<Vec<u64>>,
     /// Whether the flux of each set was summed in 64 bits.
     wide: Vec<bool>,
     /// Warnings about sets that were traced again with wide sums.

@@ -5,6 +5,7 @@ mod collect;
 mod commands;
 mod comparison;
 mod executor;
+mod fields;
 mod geometry;
 mod pieces;
 mod prepared;
@@ -18,11 +19,11 @@ use std::time::Instant;
 
 use tokio_util::sync::CancellationToken;
 
-use crate::cache::{ArenaError, LevelMapCache};
+use crate::cache::{ArenaError, FieldCache, LevelMapCache};
 use crate::calibration::Calibration;
 use crate::config::RenderConfig;
-use crate::facts::SceneFacts;
 use crate::facts::placement::LevelMapKey;
+use crate::facts::{FieldKey, Product, SceneFacts};
 use crate::frame::{Frame, FrameKind};
 use crate::gpu::shader::ShaderSources;
 use crate::gpu::timing::Timing;
@@ -99,6 +100,8 @@ pub struct Renderer {
     kernels: KernelCache,
     level_maps: LevelMapCache,
     arena: Option<wgpu::Buffer>,
+    fields: FieldCache,
+    field_arena: Option<wgpu::Buffer>,
     geometry: geometry::GeometryCache,
     memory_budget_bytes: u64,
     calibration: Calibration,
@@ -136,6 +139,14 @@ impl Renderer {
                 "the device binds no more level maps at once"
             );
         }
+        let field_arena_bytes = config.field_budget_bytes().min(bindable_bytes(&gpu));
+        if field_arena_bytes < config.field_budget_bytes() {
+            tracing::debug!(
+                wanted_bytes = config.field_budget_bytes(),
+                field_arena_bytes,
+                "the device binds no more fields of light at once"
+            );
+        }
         Ok(Self {
             timing: Timing::new(&gpu),
             gpu,
@@ -146,6 +157,8 @@ impl Renderer {
             kernels: KernelCache::default(),
             level_maps: LevelMapCache::new(arena_bytes),
             arena: None,
+            fields: FieldCache::new(field_arena_bytes),
+            field_arena: None,
             geometry: geometry::GeometryCache::default(),
             memory_budget_bytes: config.memory_budget_bytes(),
             calibration: config.calibration.clone().unwrap_or_default(),
@@ -257,6 +270,7 @@ impl Renderer {
         let plan = self.plan_in_budget(rendered.passes(), facts, Wanted::Frame)?;
         let plan_ms = prepared.took_ms() + ms_since(started);
         let cache_before = self.level_maps.stats();
+        let fields_before = self.fields.stats();
         let ran = Instant::now();
         let run = self.run(resolved, facts, &plan, cancel)?;
         let builds_level_maps: Vec<&str> = (plan.graph.of(Scope::LevelMap).iter())
@@ -307,15 +321,18 @@ impl Renderer {
                 allocated_bytes: run.allocated_bytes,
                 budget_bytes: self.memory_budget_bytes,
                 level_maps: cache_change(&cache_before, &self.level_maps.stats()),
+                fields: cache_change(&fields_before, &self.fields.stats()),
             },
             energy: run.energy,
             planes: run.planes,
+            fields: run.fields,
             accuracy: run.accuracy,
             exposure: exposure(facts, resolved),
             camera: projection.as_ref().map(camera_stats),
             warnings: plan.warnings,
         };
-        let was_measured = !stats.energy.is_empty();
+        // The slices of a field count no light on paths that are not followed.
+        let was_measured = !stats.energy.is_empty() && facts.method.product != Product::Field;
         collect::join_warnings(&mut stats.warnings, run.warnings, was_measured);
         collect::add_flux_to_warnings(&mut stats.warnings, facts, &stats.energy);
         if let Some(tune::Tuned { chosen, .. }) = tuned {
@@ -365,7 +382,7 @@ impl Renderer {
         })
     }
 
-    /// The plan of a frame. Level maps of other scenes are dropped if they do not fit beside it, so whether a frame can be rendered does
+    /// The plan of a frame. Level maps and fields of other scenes are dropped if they do not fit beside it, so whether a frame can be rendered does
     /// not depend on the cache.
     fn plan_in_budget(
         &mut self,
@@ -374,6 +391,7 @@ impl Renderer {
         wanted: Wanted,
     ) -> Result<FramePlan, RenderError> {
         let plan = plan::plan(passes, facts, wanted, self)?;
+        self.drop_idle_fields(&plan);
         let is_over = plan.report.peak_bytes > self.memory_budget_bytes;
         if !is_over || self.arena.is_none() || !plan::level_maps(facts).is_empty() {
             return Ok(plan);
@@ -397,7 +415,10 @@ impl Renderer {
             .level_maps
             .reserve(&plan::level_maps(facts))
             .map_err(|error| self.level_maps_over_budget(error))?;
-        let peak_bytes = plan.report.peak_bytes;
+        let missing_fields = self.reserve_fields(facts, plan).inspect_err(|_| {
+            self.level_maps.forget_unbuilt();
+        })?;
+        let peak_bytes = plan.report.peak_bytes + self.idle_field_bytes(plan);
         let free_budget_bytes = self.memory_budget_bytes.saturating_sub(peak_bytes);
         self.bind_groups.begin_frame();
         let needs_geometry = plan.graph.slot(&GEOMETRY).is_some();
@@ -414,15 +435,19 @@ impl Renderer {
             facts,
             plan,
             missing: &missing,
+            missing_fields: &missing_fields,
             cancel,
         };
         let result = self.execute(resolved, job);
         // Finished maps stay, even if the frame was cancelled later.
         self.level_maps.forget_unbuilt();
+        self.fields.forget_unbuilt();
         if let Err(RenderError::Gpu(_)) = &result {
             // It is unknown which buffers the device failed on, so nothing that would outlive the frame is kept.
             self.level_maps.clear();
             self.arena = None;
+            self.fields.clear();
+            self.field_arena = None;
             self.geometry.clear();
             self.drop_buffers();
             self.gpu.forget_errors();
@@ -450,7 +475,7 @@ impl Renderer {
         self.bind_groups.clear();
     }
 
-    /// Drops all buffers that are kept for later frames, except level maps and geometry.
+    /// Drops all buffers that are kept for later frames, except level maps, fields and geometry.
     fn drop_buffers(&mut self) {
         self.pool.clear();
         self.uniforms = Uniforms::default();
@@ -514,10 +539,11 @@ impl Renderer {
         (self.cutting.pieces, self.cutting.longest_ms)
     }
 
-    /// Bytes held on the GPU between frames: free pooled buffers, level maps, geometry.
+    /// Bytes held on the GPU between frames: free pooled buffers, level maps, fields, geometry.
     pub fn resident_bytes(&self) -> u64 {
         self.pool.free_bytes()
             + self.arena.as_ref().map_or(0, wgpu::Buffer::size)
+            + self.resident_field_bytes()
             + self.geometry.bytes()
     }
 
@@ -585,6 +611,18 @@ impl Cached for Renderer {
             self.level_maps.stats().budget_bytes
         }
     }
+
+    fn has_field(&self, key: &FieldKey) -> bool {
+        self.fields.contains(key)
+    }
+
+    fn field_arena_bytes(&self, wanted_bytes: u64) -> u64 {
+        if wanted_bytes == 0 && self.field_arena.is_none() {
+            0
+        } else {
+            self.fields.stats().budget_bytes
+        }
+    }
 }
 
 /// Result of running a plan.
@@ -595,6 +633,7 @@ struct RunResult {
     layers: BTreeMap<crate::scene::LayerName, crate::frame::Layer>,
     energy: Vec<crate::stats::EnergyAccount>,
     planes: Vec<crate::stats::PlaneStats>,
+    fields: Vec<crate::stats::FieldStats>,
     points: Vec<Point>,
     accuracy: Option<AccuracyStats>,
     warnings: Vec<Warning>,

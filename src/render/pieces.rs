@@ -54,7 +54,45 @@ impl Cutting {
     }
 }
 
+/// Steps of a long pass that are submitted together. Like pieces, they are timed, and their time sizes the next batch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Batch {
+    most: u64,
+    recorded: u64,
+}
+
+impl Default for Batch {
+    fn default() -> Self {
+        Self {
+            most: 1,
+            recorded: 0,
+        }
+    }
+}
+
 impl Renderer {
+    /// Counts a recorded step of a long pass, and submits its batch if that is full.
+    pub(super) fn end_step(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        pass: &'static str,
+        batch: &mut Batch,
+    ) -> Result<(), RenderError> {
+        batch.recorded += 1;
+        if batch.recorded < batch.most {
+            return Ok(());
+        }
+        if self.cutting.cancel.is_cancelled() {
+            return Err(RenderError::Cancelled);
+        }
+        let ms = self.submit_now(encoder, pass)?;
+        *batch = Batch {
+            most: next_size(batch.recorded, ms),
+            recorded: 0,
+        };
+        Ok(())
+    }
+
     /// Whether a step's dispatch may be cut into pieces, which run while they are recorded.
     pub(super) fn may_be_cut(&self, step: &Step, slots: &FrameSlots) -> bool {
         let Work::Compute(groups) = step.work else {

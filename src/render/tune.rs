@@ -143,6 +143,7 @@ impl Renderer {
         let (mut low, mut high) = (ladder::FEWEST_CELLS, ladder::MOST_CELLS + 1);
         let empty = NothingCached {
             arena_bytes: self.level_maps.stats().budget_bytes,
+            field_arena_bytes: self.fields.stats().budget_bytes,
         };
         while high - low > 1 {
             let middle = low + (high - low) / 2;

@@ -32,7 +32,7 @@ pub static PASS: Pass = Pass {
     views: &[],
     wanted: |facts| {
         wanted_for_camera(facts)?;
-        if facts.method.product == Product::PointIrradiance {
+        if facts.method.product != Product::ReceiverMaps {
             return Err(format!(
                 "method {} computes the irradiance at the points itself",
                 facts.method.name

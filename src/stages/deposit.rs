@@ -12,7 +12,7 @@ use super::{Groups, Pass, Slot, Step, Steps};
 use crate::graph::Clear;
 
 /// Water cells along a side of a workgroup's square, as in the shader.
-pub(super) const CELLS_ALONG_GROUP: u32 = 8;
+pub(crate) const CELLS_ALONG_GROUP: u32 = 8;
 
 /// Wide footprints, each shared by several workgroups.
 pub static WIDE_QUEUE: Slot = Slot {

@@ -50,6 +50,8 @@ const WIDE_TEXELS: u32 = 1024;
 const BEAM_COUNTS: f64 = 1_073_741_824.0;
 /// The same in wide sums: 2⁴⁰, so that all beams of the finest grid (2 · 2048²) fit 63 bits together.
 const WIDE_BEAM_COUNTS: f64 = 1_099_511_627_776.0;
+/// Largest number of counts of one beam in sums whose addends fit u32: 2³¹.
+const ADDEND_COUNTS: f64 = 2_147_483_648.0;
 /// Fewest counts in narrow sums of the largest beam, and of an evenly lit texel of the coarsest map. Equal deposits round the same way,
 /// by up to half a count, so their rounding errors add up.
 const FINE_COUNTS: f64 = 65_536.0;
@@ -219,6 +221,12 @@ pub fn flux_scale(facts: &SceneFacts, index: usize, wide_sums: bool) -> f64 {
         .fold(0.0, f64::max);
     let narrow = WRAP_COUNTS / (NARROW_HEADROOM * texel);
     narrow.min(BEAM_COUNTS / beam).log2().floor().exp2()
+}
+
+/// Counts per unit flux in 64-bit sums whose addends fit 32 bits, so that most need one addition: the largest beam makes 2³¹ counts. A power of
+/// two. All beams of the finest grid fit 63 bits together, so such sums cannot overflow.
+pub fn addend_scale(facts: &SceneFacts, index: usize) -> f64 {
+    flux_scale(facts, index, true) / (WIDE_BEAM_COUNTS / ADDEND_COUNTS)
 }
 
 /// Flux of a map's texel from a light of unit power, under flat water with the transmittance of the most transparent slope.

@@ -7,6 +7,7 @@
 //! | level maps | `level_map`, `level_map_pyramid` |
 //! | flux on receivers | `deposit`, `split`, `landed`, `irradiance`; shared by them: `light`, `receivers`, `maps`, `sums`, `term`, `queues` |
 //! | points that pixels see or texels lie at | `points`: the slot; `camera_hits` and `texel_points` fill it; `sky_and_air_lights`, `camera_irradiance`, `shade` |
+//! | the kept field of light | `light_field`: its slots; `field_irradiance`: its light at points |
 //! | the frame's estimate of its own error | `coarse_irradiance`, `estimate` |
 //! | the water as an output of its own | `water_map` |
 //! | caustic volumes | `volume_bounds`: shared by methods in which points find their volumes |
@@ -20,6 +21,7 @@ pub mod camera_irradiance;
 pub mod coarse_irradiance;
 pub mod deposit;
 pub mod estimate;
+pub mod field_irradiance;
 pub mod gpu_values;
 pub mod hits;
 pub mod irradiance;
@@ -27,6 +29,7 @@ pub mod landed;
 pub mod level_map;
 pub mod level_map_pyramid;
 pub mod light;
+pub mod light_field;
 pub mod maps;
 pub mod objects;
 pub mod points;

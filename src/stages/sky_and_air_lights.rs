@@ -40,11 +40,11 @@ pub static PASS: Pass = Pass {
     ],
     views: &[],
     wanted: |facts| match facts.method.product {
-        Product::PointIrradiance => Ok(format!(
+        Product::PointIrradiance | Product::Field => Ok(format!(
             "method {} adds its light to that of the surroundings",
             facts.method.name
         )),
-        Product::ReceiverMaps | Product::Field => Err(format!(
+        Product::ReceiverMaps => Err(format!(
             "method {} does not compute irradiance at points",
             facts.method.name
         )),

@@ -5,7 +5,7 @@ use super::maps::MapLayout;
 use crate::facts::SceneFacts;
 use crate::graph::Clear;
 
-/// Number of (low, high) pairs in the energy account, see `shaders/shared/flux.wgsl`.
+/// Number of (low, high) pairs in the energy account, see `shaders/shared/terms.wgsl`.
 pub const ENERGY_TERMS: u64 = 18;
 
 /// Flux sums of a beam set.

@@ -1,4 +1,4 @@
-//! Terms of the energy account, as in `shaders/shared/flux.wgsl` (a test compares the numbers). Spectral terms take three places. Terms
+//! Terms of the energy account, as in `shaders/shared/terms.wgsl` (a test compares the numbers). Spectral terms take three places. Terms
 //! from [`UNRESOLVED`] on are no part of the balance; warnings report them.
 
 /// Flux that falls on the simulated piece of water.

@@ -18,7 +18,7 @@ fn key(mesh: &str, texels: u32) -> LevelMapKey {
 fn frame(cache: &mut LevelMapCache, keys: &[&LevelMapKey]) -> Vec<LevelMapKey> {
     let missing = cache.reserve(keys).unwrap();
     for key in &missing {
-        cache.built(key);
+        cache.built(key, ());
     }
     missing
 }
@@ -174,7 +174,7 @@ fn pieces_do_not_keep_a_map_out_that_fits() {
     assert!(missing.contains(kept) && missing.contains(&large));
     assert!(!cache.contains(kept) && !cache.contains(&large));
     for key in &missing {
-        cache.built(key);
+        cache.built(key, ());
     }
     assert!(cache.contains(kept) && cache.contains(&large));
     // Eight were evicted, the kept one among them; it was not a hit.
@@ -209,15 +209,15 @@ fn what_was_reserved_and_not_built_is_not_there() {
         [a.clone(), b.clone()],
         "not built"
     );
-    cache.built(&a);
+    cache.built(&a, ());
     assert!(cache.contains(&a) && !cache.contains(&b));
     // The frame breaks off: what is whole stays.
     cache.forget_unbuilt();
     assert!(cache.contains(&a) && cache.offset(&b).is_none());
     assert_eq!(counts(&cache), (0, 1, 0));
     assert_eq!((cache.stats().entries, cache.stats().bytes), (1, SMALL));
-    cache.built(&b);
-    cache.built(&a);
+    cache.built(&b, ());
+    cache.built(&a, ());
     assert!(!cache.contains(&b), "built without a place");
     assert_eq!(counts(&cache), (0, 1, 0), "built once");
     assert_eq!(frame(&mut cache, &[&b]), std::slice::from_ref(&b));
@@ -359,7 +359,7 @@ fn the_cache_has_the_requested_maps_after_any_history() {
         let breaks_off = random.below(7) == 0;
         let whole = missing.len() / if breaks_off { 2 } else { 1 };
         for k in &missing[..whole] {
-            cache.built(k);
+            cache.built(k, ());
             model.misses += 1;
         }
         cache.forget_unbuilt();

@@ -36,6 +36,7 @@ mod image_support;
 mod kept;
 mod lamps;
 mod level_map_cache;
+mod light_field;
 mod listen;
 mod log;
 mod mesh_hierarchy;

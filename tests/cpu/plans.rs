@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use caustica::facts::SceneFacts;
 use caustica::facts::placement::LevelMapKey;
+use caustica::facts::{FieldKey, SceneFacts};
 use caustica::graph::{Allocation, BeamSetRun, PlanError, Scope};
 use caustica::methods;
 use caustica::plan::{self, Cached, Plan, Wanted};
@@ -27,6 +27,18 @@ impl Cached for FakeCache {
     }
 
     fn arena_bytes(&self, wanted_bytes: u64) -> u64 {
+        if wanted_bytes == 0 && !self.full {
+            0
+        } else {
+            ARENA
+        }
+    }
+
+    fn has_field(&self, _: &FieldKey) -> bool {
+        self.full
+    }
+
+    fn field_arena_bytes(&self, wanted_bytes: u64) -> u64 {
         if wanted_bytes == 0 && !self.full {
             0
         } else {

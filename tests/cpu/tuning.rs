@@ -270,6 +270,7 @@ fn the_built_in_calibration_knows_every_pass() {
         let facts = caustica::methods::facts(&scene).unwrap();
         let cold = NothingCached {
             arena_bytes: 1 << 20,
+            field_arena_bytes: 1 << 20,
         };
         let plan = plan_scene(&facts, Wanted::Frame, &cold).unwrap();
         for (pass, _) in &plan.graph.passes {

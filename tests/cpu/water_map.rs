@@ -41,6 +41,7 @@ fn planned(resolved: &ResolvedScene) -> Plan {
     let facts = methods::facts_with_warnings(resolved).unwrap();
     let empty = NothingCached {
         arena_bytes: 64 << 20,
+        field_arena_bytes: 64 << 20,
     };
     let plan = plan::plan_scene(&facts, Wanted::Frame, &empty).unwrap();
     plan.report

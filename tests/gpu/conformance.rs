@@ -55,7 +55,7 @@ fn refuses(case: &str, resolved: &ResolvedScene) -> bool {
 /// Whether a frame has to have accounts that close.
 fn closes_accounts(method: &Method) -> bool {
     let facts = method.facts_of_default();
-    facts.conserves_energy && facts.product == Product::ReceiverMaps
+    facts.conserves_energy && facts.product != Product::PointIrradiance
 }
 
 /// Whether a method skips a case, and why.

@@ -166,6 +166,17 @@ cases! {
         every_corner_on_a_texel_corner,
         sums_beyond_32_bits,
     }
+    field {
+        slices_of_flat_water,
+        slices_at_one_height,
+        a_receiver_in_a_box_of_one_layer,
+        a_receiver_between_slices_under_a_low_sun,
+        slices_with_one_wave_per_cell,
+        slices_under_a_sun_at_10_degrees,
+        a_sheet_that_folds_within_the_slices,
+        water_at_the_side_of_the_slices,
+        slices_filled_by_single_footprints,
+    }
     camera {
         a_micrometre_under_the_surface,
         a_micrometre_over_the_surface,

@@ -36,6 +36,7 @@ mod height_fields;
 mod instances;
 #[path = "../support/instances.rs"]
 mod instances_scene;
+mod irradiance_volume;
 mod kernels;
 mod lamp_truths;
 mod lamps;

@@ -103,13 +103,19 @@ async fn metrics_count_what_happened() {
         "caustica_level_map_cache_bytes 4096",
         "caustica_level_map_cache_entries 1",
         "caustica_level_map_cache_budget_bytes 8192",
+        "caustica_field_cache_bytes 2048",
+        "caustica_field_cache_entries 1",
+        "caustica_field_cache_budget_bytes 8192",
         r#"name="Puppet 3000""#,
     ] {
         assert!(text.contains(line), "{line} is missing in\n{text}");
     }
     // Counters are of the process: other tests may have counted more.
-    for name in ["hits", "misses", "evictions"] {
-        let name = format!("\ncaustica_level_map_cache_{name}_total ");
+    let of_caches = ["level_map", "field"].into_iter().flat_map(|cache| {
+        ["hits", "misses", "evictions"]
+            .map(|name| format!("\ncaustica_{cache}_cache_{name}_total "))
+    });
+    for name in of_caches {
         let value = text.split(&name).nth(1).unwrap().lines().next().unwrap();
         assert!(value.parse::<u64>().unwrap() > 0, "{name}{value}");
     }

@@ -47,6 +47,11 @@ fn density_at(vertex: u32) -> f32 {
     return 2.0 * flux / double_area;
 }
 
+// Whether an object blocks the way from the point to where its light enters the water.
+fn is_blocked(entry_m: vec3f, path_m: f32) -> bool {
+    return is_way_blocked(seen, entry_m, path_m, select(0u, volumes.instance_count, volumes.has_shadows == 1u));
+}
+
 // Light of volume `k` of a block, in whose cut the point lies, W/m².
 fn light_of(block: vec2u, k: u32) -> vec3f {
     let cell = cell_in(block, k);

@@ -37,6 +37,11 @@ struct Place {
     share: f32,
 }
 
+// Whether an object blocks the way from the point to where its light enters the water.
+fn is_blocked(entry_m: vec3f, path_m: f32) -> bool {
+    return is_way_blocked(seen, entry_m, path_m, select(0u, volumes.instance_count, volumes.has_shadows == 1u));
+}
+
 // Depths of the planes around the point. The floor is a plane of its own (§4.2).
 fn planes_around() -> vec2f {
     if seen.receiver == 0.0 { return vec2f(depth_m); }

@@ -29,6 +29,8 @@ pub struct Info {
     pub memory_budget_bytes: u64,
     /// GPU memory for cached level maps, bytes.
     pub level_map_budget_bytes: u64,
+    /// GPU memory for kept fields of light, bytes.
+    pub field_budget_bytes: u64,
     /// Requests that may wait for the GPU.
     pub queue: usize,
     /// Time from arrival after which a request is answered 503, s.
@@ -53,6 +55,7 @@ pub async fn info(State(state): State<AppState>) -> Json<Info> {
         limits: *state.limits(),
         memory_budget_bytes: config.memory_budget_bytes(),
         level_map_budget_bytes: config.level_map_budget_bytes(),
+        field_budget_bytes: config.field_budget_bytes(),
         queue: settings.waiting,
         deadline_s: settings.deadline.as_secs_f64(),
         features: features(),

@@ -23,6 +23,8 @@ pub enum Family {
     Mesh,
     /// Footprints that fold, collapse and spread.
     Fold,
+    /// Kept fields of light.
+    Field,
     /// Awkward cameras and sizes of pictures.
     Camera,
     /// A device that is lost, runs out of memory, is cancelled, or is used for days.
@@ -31,13 +33,14 @@ pub enum Family {
 
 impl Family {
     /// All families, in the order of the suite.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Light,
         Self::Water,
         Self::Sea,
         Self::Place,
         Self::Mesh,
         Self::Fold,
+        Self::Field,
         Self::Camera,
         Self::Machine,
     ];
@@ -51,6 +54,7 @@ impl Family {
             Self::Place => "place",
             Self::Mesh => "mesh",
             Self::Fold => "fold",
+            Self::Field => "field",
             Self::Camera => "camera",
             Self::Machine => "machine",
         }

@@ -8,12 +8,13 @@
 //! - `bench`: rendering with the checks for all cases;
 //! - `truths`: what pictures are compared with;
 //! - `page`: the results as a page;
-//! - the families: `light` (and `lamp`), `water`, `sea`, `place`, `mesh`, `fold`, `camera`, `machine` (with
+//! - the families: `light` (and `lamp`), `water`, `sea`, `place`, `mesh`, `fold`, `field`, `camera`, `machine` (with
 //!   `sabotage`: how to break a device).
 
 mod bench;
 mod camera;
 pub mod case;
+mod field;
 mod fold;
 mod lamp;
 mod light;
@@ -43,6 +44,7 @@ pub fn all() -> impl Iterator<Item = &'static Case> {
         place::CASES,
         mesh::CASES,
         fold::CASES,
+        field::CASES,
         camera::CASES,
         machine::CASES,
     ]

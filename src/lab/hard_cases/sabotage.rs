@@ -136,6 +136,10 @@ impl RenderBackend for Saboteur {
         self.renderer.level_map_cache()
     }
 
+    fn field_cache(&self) -> CacheStats {
+        self.renderer.field_cache()
+    }
+
     fn idle(&mut self) -> Result<(), GpuError> {
         self.renderer.idle()
     }

@@ -277,6 +277,15 @@ impl RenderBackend for Fake {
         self.control.inner.lock().unwrap().cache.clone()
     }
 
+    /// The same counts, in half the bytes.
+    fn field_cache(&self) -> CacheStats {
+        let cache = self.level_map_cache();
+        CacheStats {
+            bytes: cache.bytes / 2,
+            ..cache
+        }
+    }
+
     fn idle(&mut self) -> Result<(), GpuError> {
         match self.control.inner.lock().unwrap().idle_errors.pop_front() {
             Some(error) => Err(error),
