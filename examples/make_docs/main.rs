@@ -20,6 +20,7 @@ use std::error::Error;
 use std::path::Path;
 
 use caustica::config::{Limits, RenderConfig};
+use caustica::lab::study::comparison;
 use caustica::lab::study::report::write_study;
 use caustica::lab::study::sweep::{Refusal, SweepSettings, run_study};
 use caustica::reference::{TruthSettings, truth};
@@ -68,6 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let sweeps = SweepSettings {
             dials: scene.dials(&resolved)?,
             grid: false,
+            rungs: comparison::DEFAULT_RUNGS,
             runs: RUNS,
         };
         let (study, images) = run_study(

@@ -212,6 +212,7 @@ fn a_plan_reads_well() {
         }],
         peak_bytes: 1536,
         chosen: None,
+        method_choice: None,
         warnings: Vec::new(),
     };
     assert_eq!(
