@@ -58,7 +58,8 @@ struct Variant {
 ///
 /// `all` is every method with each of its words; `planes:all` is one method with each of its words; `planes` is the method with
 /// the words that are its defaults; `planes:slicing=smart` fixes dials of the method. A method with several numbers of its own has a second
-/// ladder, on which the first is four times as large: nothing says that its numbers have to be equal. Series with fixed dials run on that.
+/// ladder, on which the first is four times as large: nothing says that its numbers have to be equal. Series with fixed dials run on that. A
+/// ladder ends early where its chief dial is at the end of its range.
 ///
 /// # Errors
 /// Unknown methods, dials and words, at their places under `/quality/method`; a fixed dial that leaves nothing to grow.
@@ -237,10 +238,20 @@ fn contender(
                 .iter()
                 .map(|name| ((*name).to_owned(), rung[*name].to_string())),
         );
-        // Where all dials are at the ends of their ranges, nothing grows any more.
-        if settings.last().is_none_or(|(_, before)| *before != dials) {
-            settings.push((scale, dials));
+        // The ladder ends with the range of its chief dial: a setting beyond would not be where its scale says.
+        let number = |dials: &DialTexts| {
+            let value = dials.iter().find(|(name, _)| name == chief);
+            value.and_then(|(_, value)| value.parse::<f64>().ok())
+        };
+        let before = settings
+            .last()
+            .map(|(before, dials)| (*before, number(dials)));
+        if let Some((before, Some(value))) = before
+            && number(&dials).is_none_or(|now| now * before < 0.9 * value * scale)
+        {
+            break;
         }
+        settings.push((scale, dials));
     }
     Ok(Contender {
         method: method.name,

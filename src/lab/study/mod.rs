@@ -10,6 +10,7 @@ pub mod comparison;
 pub mod dial;
 pub mod equal_time;
 pub mod error_images;
+mod error_tiles;
 pub mod figures;
 pub mod order;
 pub mod pareto;
