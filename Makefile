@@ -42,7 +42,7 @@ lint: deps
 bench: deps
 	$(CARGO) bench --locked --bench caustica
 
-# Measure error and time of each dial, and write docs/accuracy.md, docs/level-maps.md, docs/sea.md, docs/waves.md and docs/hard-cases.md; one to two hours on an idle machine.
+# Measure error and time of each dial, and write docs/accuracy.md, docs/level-maps.md, docs/sea.md, docs/waves.md, docs/methods.md and docs/hard-cases.md; one to two hours on an idle machine.
 docs: deps
 	$(CARGO) run --release --locked --example make_docs
 

@@ -1,5 +1,7 @@
 //! The `stats` of every answer: the cost and the trustworthiness of a frame.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -267,6 +269,36 @@ pub struct ChosenDials {
     /// Whether the target is predicted to be met. If not, these are the best dials available.
     pub meets: bool,
     /// How the choice was made, one sentence.
+    pub reason: String,
+}
+
+/// The method that the planner would choose for a wanted error. A render uses the method that the scene names.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct MethodAdvice {
+    /// Its name.
+    pub method: String,
+    /// Its dials, where they are not those in `chosen`: they met the error on every measured scene of this kind.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schema(value_type = BTreeMap<String, Object>)]
+    pub dials: BTreeMap<String, serde_json::Value>,
+    /// Why this one, one sentence without full stop.
+    pub reason: String,
+    /// Expected relative L1 error.
+    pub expected_error: f64,
+    /// Expected time of a warm frame, ms.
+    pub expected_ms: f64,
+    /// What the expectation is based on.
+    pub source: String,
+    /// Why not the other methods.
+    pub others: Vec<OtherMethod>,
+}
+
+/// A method that the planner would not choose.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct OtherMethod {
+    /// Its name.
+    pub method: String,
+    /// Why not.
     pub reason: String,
 }
 

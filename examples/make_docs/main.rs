@@ -1,7 +1,7 @@
 //! Writes `docs/accuracy.md` (the effect of each dial on the example scenes, measured by the program itself), `docs/level-maps.md`
-//! (the thesis's experiments with our measurements), `docs/sea.md` (sunlight under the sea), `docs/hard-cases.md` and `docs/waves.md`
-//! (each kind of water). The arguments `accuracy`, `level_maps`, `sea`, `hard_cases` and `waves` write only that page; names of scenes
-//! print the page's text about them.
+//! (the thesis's experiments with our measurements), `docs/sea.md` (sunlight under the sea), `docs/hard-cases.md`, `docs/waves.md`
+//! (each kind of water) and `docs/methods.md` (every method on several scenes). The arguments `accuracy`, `level_maps`, `sea`, `hard_cases`,
+//! `waves` and `methods` write only that page; names of scenes print the text about them, after `methods` that of its page.
 //!
 //! `make docs` runs it. Truths are kept in `out/truth`, so a second run only renders. Times are of the machine that it runs on, which
 //! the page names.
@@ -9,7 +9,10 @@
 mod hard_cases;
 mod layers;
 mod level_maps;
+mod methods;
+mod methods_page;
 mod page;
+mod papers;
 mod residual;
 mod scenes;
 mod sea;
@@ -20,6 +23,7 @@ use std::error::Error;
 use std::path::Path;
 
 use caustica::config::{Limits, RenderConfig};
+use caustica::lab::study::comparison;
 use caustica::lab::study::report::write_study;
 use caustica::lab::study::sweep::{Refusal, SweepSettings, run_study};
 use caustica::reference::{TruthSettings, truth};
@@ -36,6 +40,14 @@ const RUNS: u32 = 5;
 fn main() -> Result<(), Box<dyn Error>> {
     let only: Vec<String> = std::env::args().skip(1).collect();
     let mut chapters = Vec::new();
+    if let Some((methods::NAME, rest)) =
+        only.split_first().map(|(name, rest)| (name.as_str(), rest))
+    {
+        return methods::write(rest);
+    }
+    if only.is_empty() {
+        methods::write(&[])?;
+    }
     if only.is_empty() || only.iter().any(|name| name == level_maps::NAME) {
         eprintln!("{} …", level_maps::NAME);
         level_maps::write()?;
@@ -68,6 +80,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let sweeps = SweepSettings {
             dials: scene.dials(&resolved)?,
             grid: false,
+            rungs: comparison::DEFAULT_RUNGS,
             runs: RUNS,
         };
         let (study, images) = run_study(

@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use caustica::config::Limits;
+use caustica::lab::study::comparison;
 use caustica::lab::study::dial::Dial;
 use caustica::lab::study::sweep::{Refusal, SweepSettings, run_study};
 use caustica::reference::Truth;
@@ -54,6 +55,7 @@ pub(crate) fn measure(
         let settings = SweepSettings {
             dials: vec![Dial::parse(&format!("water_cells={}", chosen.water_cells))?],
             grid: false,
+            rungs: comparison::DEFAULT_RUNGS,
             runs,
         };
         let (study, _) = run_study(

@@ -1,4 +1,7 @@
-//! The measurements behind predictions: what passes cost on one machine, and how far a frame's estimate of its error may be off.
+//! The measurements behind predictions: what passes cost on one machine, and how far a frame's estimate of its error may be off;
+//! `frontiers` has what each method achieves in a given time.
+
+pub mod frontiers;
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! `caustica accuracy`: error against time of a scene, as tables, plots and pictures.
+//! `caustica accuracy` and `caustica compare`: error against time of a scene, as tables, plots and pictures. The one sweeps dials, the other
+//! compares methods, each at settings of its own.
 
 use std::path::{Path, PathBuf};
 
@@ -8,14 +9,17 @@ use tokio_util::sync::CancellationToken;
 use super::error::CliError;
 use super::notes::{say, say_notes};
 use super::progress::Progress;
-use super::scene_file;
+use super::scene_file::{self, SceneFile};
 use super::scene_flags::SceneArgs;
 use super::summary::columns;
 use crate::config::{Limits, RenderConfig};
+use crate::lab::study::comparison::{self, METHOD_DIAL};
 use crate::lab::study::dial::Dial;
-use crate::lab::study::report::{ReportError, write_study};
-use crate::lab::study::study::Study;
+use crate::lab::study::points::{Points, with_points};
+use crate::lab::study::report::{ReportError, method_conclusions, write_study};
+use crate::lab::study::study::{Point, Study, Sweep};
 use crate::lab::study::sweep::{self, Refusal, StudyError, SweepSettings, run_study};
+use crate::lab::study::words::named_setting;
 use crate::reference::{ReferenceError, TruthSettings, truth};
 use crate::render::{RenderError, Renderer};
 use crate::scene::ResolvedScene;
@@ -27,7 +31,8 @@ pub struct AccuracyArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// A dial of `quality` and its values: `water_cells=64..1024` (doubling), `split_levels=0..4` (counting), `a,b,c`. May be
-    /// given several times. Without it, the dials that matter to the scene are swept.
+    /// given several times. Without it, the dials that matter to the scene are swept. `method` as the only dial, without `--grid`, is
+    /// what `caustica compare` does.
     #[arg(long, value_name = "NAME=VALUES")]
     pub dial: Vec<String>,
     /// Sweep all combinations of the dials instead of one dial at a time.
@@ -59,20 +64,103 @@ pub(super) fn truth_error(text: &str) -> Result<f64, String> {
 /// A bad scene or dial, a scene without a truth, a GPU that fails, a folder that cannot be written.
 pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
     let scene = scene_file::load(&args.scene, None, limits)?;
-    let resolved = &scene.resolved;
     let settings = SweepSettings {
-        dials: dials(args, resolved)?,
+        dials: dials(args, &scene.resolved)?,
         grid: args.grid,
+        rungs: comparison::DEFAULT_RUNGS,
         runs: args.runs,
     };
+    let asked = Asked {
+        file: &args.scene.scene,
+        truth_error: args.truth_error,
+        folder: &args.output,
+    };
+    study_of(&scene, &asked, &settings, config, limits)
+}
+
+/// Which methods to compare, at what, and where to write the study.
+#[derive(Clone, Debug, Args)]
+pub struct CompareArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Methods, separated by commas: `all` (every method with every word of its dials), `photon`, `photon:all` (with every word),
+    /// `photon:search=exact` (with this value of a dial; several are separated by commas).
+    #[arg(long, default_value = comparison::ALL, value_name = "METHODS")]
+    pub methods: String,
+    /// Points to compare at: `map`, texels of a map of the floor, or `view`, what the camera sees. Default: those of the scene's own
+    /// output. A map that the scene does not ask for shows a square of the floor around where the camera looks, in 256 × 256 texels.
+    #[arg(long, value_enum)]
+    pub points: Option<Points>,
+    /// Settings of each method: with 4 those of 64, 128, 256 and 512 water cells, its other dials in proportion.
+    #[arg(long, default_value_t = comparison::DEFAULT_RUNGS, value_parser = clap::value_parser!(u32).range(2..=6))]
+    pub settings: u32,
+    /// Timed runs of each setting; settings that take over a second get three.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub runs: u32,
+    /// Largest relative L1 error of the float64 reference, by its own estimate.
+    #[arg(long, default_value_t = 2e-3, value_parser = truth_error, value_name = "ERROR")]
+    pub truth_error: f64,
+    /// Folder to write to; created if it does not exist.
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: PathBuf,
+}
+
+/// Compares methods, each at settings of its own, with the reference and with each other: as [`run`], with one plot and one sheet of
+/// pictures of all.
+///
+/// # Errors
+///
+/// As [`run`], and an unknown method.
+pub fn compare(args: &CompareArgs, config: &RenderConfig, limits: &Limits) -> Result<(), CliError> {
+    let mut scene = scene_file::load(&args.scene, None, limits)?;
+    let file = &args.scene.scene;
+    if let Some(points) = args.points {
+        scene.resolved = with_points(&scene.resolved, points, limits).map_err(|error| {
+            let file = file.display().to_string();
+            CliError::Scene { file, error }
+        })?;
+    }
+    let names = comparison::split_list(&args.methods);
+    let dial = Dial::new(METHOD_DIAL, names)
+        .map_err(|error| CliError::Usage(format!("--methods {}: {error}", args.methods)))?;
+    let settings = SweepSettings {
+        dials: vec![dial],
+        grid: false,
+        rungs: args.settings,
+        runs: args.runs,
+    };
+    let asked = Asked {
+        file,
+        truth_error: args.truth_error,
+        folder: &args.output,
+    };
+    study_of(&scene, &asked, &settings, config, limits)
+}
+
+/// What a study is made from, and where it goes.
+struct Asked<'a> {
+    file: &'a Path,
+    truth_error: f64,
+    folder: &'a Path,
+}
+
+fn study_of(
+    scene: &SceneFile,
+    asked: &Asked<'_>,
+    settings: &SweepSettings,
+    config: &RenderConfig,
+    limits: &Limits,
+) -> Result<(), CliError> {
+    let resolved = &scene.resolved;
     // Check this before the reference is computed, which may take minutes.
-    sweep::check(resolved, &settings, limits).map_err(|error| refused(args, error))?;
-    std::fs::create_dir_all(&args.output).map_err(|e| CliError::write(&args.output, e))?;
+    sweep::check(resolved, settings, limits).map_err(|error| refused(asked, error))?;
+    std::fs::create_dir_all(asked.folder).map_err(|e| CliError::write(asked.folder, e))?;
     say_notes(&scene.notes);
     let progress = Progress::new();
     progress.say("the float64 truth");
     let truth_settings = TruthSettings {
-        target_error: Some(args.truth_error),
+        target_error: Some(asked.truth_error),
         disk: config.truth_cache.clone().or_else(cache_folder),
         ..TruthSettings::default()
     };
@@ -82,7 +170,7 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
         &|part| progress.at(part),
         &|| false,
     )
-    .map_err(|error| no_truth(args, &error))?;
+    .map_err(|error| no_truth(asked, &error))?;
     let mut renderer = Renderer::new(config)?;
     let never = CancellationToken::new();
     let mut render = |scene: ResolvedScene| {
@@ -93,13 +181,13 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
                 _ => Refusal::All(error),
             })
     };
-    let name = args.scene.scene.file_stem().map(|s| s.to_string_lossy());
+    let name = asked.file.file_stem().map(|s| s.to_string_lossy());
     let name = name.filter(|name| name != "-").unwrap_or_default();
     let (study, images) = run_study(
         resolved,
         &name,
         &truth,
-        &settings,
+        settings,
         limits,
         &mut render,
         &mut |done, total, what| {
@@ -110,9 +198,9 @@ pub fn run(args: &AccuracyArgs, config: &RenderConfig, limits: &Limits) -> Resul
             true
         },
     )
-    .map_err(|error| refused(args, error))?;
+    .map_err(|error| refused(asked, error))?;
     progress.say("tables and plots");
-    let files = write_study(&args.output, &study, &images).map_err(not_written)?;
+    let files = write_study(asked.folder, &study, &images).map_err(not_written)?;
     progress.finish();
     say(in_words(&study));
     for file in files {
@@ -140,10 +228,10 @@ pub(super) fn cache_folder() -> Option<PathBuf> {
     Some(folder.join("caustica").join("truth"))
 }
 
-fn no_truth(args: &AccuracyArgs, error: &ReferenceError) -> CliError {
+fn no_truth(asked: &Asked<'_>, error: &ReferenceError) -> CliError {
     CliError::Study(format!(
         "{}: no float64 truth: {error}",
-        args.scene.scene.display()
+        asked.file.display()
     ))
 }
 
@@ -154,11 +242,11 @@ fn not_written(error: ReportError) -> CliError {
     }
 }
 
-fn refused(args: &AccuracyArgs, error: StudyError<RenderError>) -> CliError {
+fn refused(asked: &Asked<'_>, error: StudyError<RenderError>) -> CliError {
     match error {
         StudyError::Render(error) => CliError::Render(error),
         StudyError::Scene(error) => CliError::Scene {
-            file: args.scene.scene.display().to_string(),
+            file: asked.file.display().to_string(),
             error,
         },
         other => CliError::Study(other.to_string()),
@@ -185,23 +273,10 @@ pub fn in_words(study: &Study) -> String {
             .map(str::to_owned)
             .to_vec(),
     ];
-    for point in study.sweeps.iter().flat_map(|sweep| &sweep.points) {
-        let dials: Vec<String> = point
-            .dials
-            .iter()
-            .map(|(name, value)| format!("{name} {}", value.to_string().trim_matches('"')))
-            .collect();
-        rows.push(vec![
-            dials.join(", "),
-            format!("{:.4} %", 100.0 * point.error.relative_l1),
-            point
-                .error
-                .estimated
-                .map_or_else(String::new, |e| format!("{:.4} %", 100.0 * e)),
-            format!("{:.1}", point.cost.wall_ms.median),
-            super::summary::bytes(point.cost.peak_bytes),
-            if point.on_pareto_front { "*" } else { "" }.to_owned(),
-        ]);
+    for sweep in &study.sweeps {
+        for point in &sweep.points {
+            rows.push(row(sweep, point));
+        }
     }
     text.push_str(&columns(&rows, "  "));
     text.push('\n');
@@ -213,8 +288,36 @@ pub fn in_words(study: &Study) -> String {
             text.push_str(&format!("{}: error ÷ {factor:.2} per level\n", sweep.dial));
         }
     }
+    for sentence in method_conclusions(study)
+        .iter()
+        .filter(|_| study.is_comparison())
+    {
+        text.push_str(&format!("{sentence}\n"));
+    }
     for warning in &study.warnings {
         text.push_str(&format!("warning: {}\n", warning.message));
     }
     text
+}
+
+fn row(sweep: &Sweep, point: &Point) -> Vec<String> {
+    let dials = point.dials.iter();
+    let dials: Vec<String> = dials
+        .map(|(name, value)| format!("{name} {}", value.to_string().trim_matches('"')))
+        .collect();
+    let setting = match sweep.series {
+        Some(_) => named_setting(sweep, point),
+        None => dials.join(", "),
+    };
+    vec![
+        setting,
+        format!("{:.4} %", 100.0 * point.error.relative_l1),
+        point
+            .error
+            .estimated
+            .map_or_else(String::new, |e| format!("{:.4} %", 100.0 * e)),
+        format!("{:.1}", point.cost.wall_ms.median),
+        super::summary::bytes(point.cost.peak_bytes),
+        if point.on_pareto_front { "*" } else { "" }.to_owned(),
+    ]
 }

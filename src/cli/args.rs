@@ -40,6 +40,9 @@ pub enum Command {
     Animate(animate::AnimateArgs),
     /// Plots error against time: renders a scene with each setting of its dials and compares it with the float64 reference.
     Accuracy(accuracy::AccuracyArgs),
+    /// Compares methods by error and time: renders a scene with each method at several settings of its own and compares with the float64
+    /// reference.
+    Compare(accuracy::CompareArgs),
     /// Repeats a published experiment.
     Experiment(experiment::ExperimentArgs),
     /// Measures this machine for predictions of time and error.
@@ -115,6 +118,7 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Render(args) => render::run(&args, &render, &limits),
         Command::Animate(args) => animate::run(&args, &render, &limits),
         Command::Accuracy(args) => accuracy::run(&args, &render, &limits),
+        Command::Compare(args) => accuracy::compare(&args, &render, &limits),
         Command::Experiment(args) => experiment::run(&args, &render),
         Command::Calibrate(args) => calibrate::run(&args, &render),
         Command::HardCases(args) => hard_cases::run(&args, &render),

@@ -1,4 +1,4 @@
-//! The command line. `args` declares it, each command has a file (`render`, `animate`, `accuracy`, `experiment`, `calibrate`,
+//! The command line. `args` declares it, each command has a file (`render`, `animate`, `accuracy` with `compare`, `experiment`, `calibrate`,
 //! `hard_cases`, `plan`, `serve`, `selfcheck`, `health`), and `error` has the exit codes.
 //!
 //! Shared by the commands: `scene_flags` makes a flag of every field of `quality` and `output`, `scene_file` reads a scene with

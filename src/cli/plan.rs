@@ -8,13 +8,13 @@ use tokio_util::sync::CancellationToken;
 
 use super::error::CliError;
 use super::scene_flags::SceneArgs;
-use super::summary::{bytes, columns, predicted};
+use super::summary::{bytes, columns, percent, predicted};
 use super::{files, notes, scene_file};
 use crate::config::{Limits, RenderConfig};
 use crate::plan::Plan;
 use crate::plan::{NothingCached, Wanted, plan_scene};
 use crate::render::{Prepared, RenderError, Renderer};
-use crate::stats::ChosenDials;
+use crate::stats::{ChosenDials, MethodAdvice};
 
 /// What to plan.
 #[derive(Clone, Debug, Args)]
@@ -84,8 +84,10 @@ pub fn in_words(plan: &Plan) -> String {
         vec![slot.name.clone(), bytes(slot.bytes), holds]
     });
     let chosen = plan.chosen.iter().flat_map(dials);
-    let sections: [(&str, Vec<Vec<String>>); 4] = [
+    let methods = plan.method_choice.iter().flat_map(method);
+    let sections: [(&str, Vec<Vec<String>>); 5] = [
         ("Chosen dials", chosen.collect()),
+        ("Method for this error", methods.collect()),
         ("Passes", passes.collect()),
         ("Not needed", absent.collect()),
         ("Memory", slots.collect()),
@@ -100,6 +102,31 @@ pub fn in_words(plan: &Plan) -> String {
         let _ = writeln!(text, "Warning ({}): {}", warning.code, warning.message);
     }
     text
+}
+
+/// The advised method, what to expect of it, and why not the others.
+fn method(advice: &MethodAdvice) -> Vec<Vec<String>> {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let mut rows = vec![row(&advice.method, advice.reason.clone())];
+    if !advice.dials.is_empty() {
+        let dials = advice.dials.iter();
+        let dials: Vec<String> = dials
+            .map(|(name, value)| format!("{name} {}", value.to_string().trim_matches('"')))
+            .collect();
+        rows.push(row("dials", dials.join(", ")));
+    }
+    rows.push(row(
+        "expected",
+        format!(
+            "error {}, {:.0} ms, from {}",
+            percent(advice.expected_error),
+            advice.expected_ms,
+            advice.source
+        ),
+    ));
+    let others = advice.others.iter();
+    rows.extend(others.map(|other| row(&format!("not {}", other.method), other.reason.clone())));
+    rows
 }
 
 /// Chosen dials, what they are predicted to give, and why.

@@ -38,6 +38,21 @@ impl fmt::Display for Plan {
                 chosen.predicted_error, chosen.predicted_ms, chosen.reason
             )?;
         }
+        if let Some(choice) = &self.method_choice {
+            writeln!(f, "method for this error")?;
+            writeln!(
+                f,
+                "  {}: {}; {:.2e} and {:.0} ms expected from {}",
+                choice.method,
+                choice.reason,
+                choice.expected_error,
+                choice.expected_ms,
+                choice.source
+            )?;
+            for other in &choice.others {
+                writeln!(f, "  not {}: {}", other.method, other.reason)?;
+            }
+        }
         writeln!(f, "passes")?;
         for pass in &self.passes {
             let times = if pass.runs == 1 {

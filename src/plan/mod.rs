@@ -26,7 +26,7 @@ use crate::stages::shade::RADIANCE;
 use crate::stages::sums::ENERGY;
 use crate::stages::water_map::WATER_MAP;
 use crate::stages::{Caustica, Pass, Slot};
-use crate::stats::{AbsentPass, ChosenDials, Warning};
+use crate::stats::{AbsentPass, ChosenDials, MethodAdvice, Warning};
 
 /// Bytes of the list that is bound where a scene has no elements.
 pub const EMPTY_LIST_BYTES: u64 = 256;
@@ -47,6 +47,9 @@ pub struct Plan {
     /// The dials that `quality.target_error` or `quality.time_budget_ms` were turned into; absent where neither is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<ChosenDials>,
+    /// For `quality.target_error`: the method that would be chosen for this error, and why.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method_choice: Option<MethodAdvice>,
     /// What the plan leaves out or sub-samples.
     pub warnings: Vec<Warning>,
 }
@@ -325,6 +328,7 @@ fn report(
             .collect(),
         peak_bytes,
         chosen: None,
+        method_choice: None,
         warnings: facts.warnings.clone(),
     }
 }

@@ -21,6 +21,7 @@ use tokio_util::sync::CancellationToken;
 
 use crate::cache::{ArenaError, FieldCache, LevelMapCache};
 use crate::calibration::Calibration;
+use crate::calibration::frontiers::Frontiers;
 use crate::config::RenderConfig;
 use crate::facts::placement::LevelMapKey;
 use crate::facts::{FieldKey, Product, SceneFacts};
@@ -41,6 +42,7 @@ use crate::stats::{
     AccuracyStats, AdapterStats, CacheStats, CameraStats, ExposureStats, MemoryStats, MethodStats,
     PassStats, Stats, TimeStats, Warning,
 };
+use crate::tuning::method::{self, Question};
 
 pub use prepared::Prepared;
 pub use self_check::{SelfCheck, SelfCheckItem, TwinError, twin_error};
@@ -211,6 +213,16 @@ impl Renderer {
         let rendered = tuned.as_ref().map_or(prepared, |tuned| &tuned.rung);
         let facts = self.facts_here(rendered.facts());
         let mut plan = plan::plan(rendered.passes(), &facts, Wanted::Frame, self)?.report;
+        let target = prepared.resolved().scene.quality.target_error;
+        plan.method_choice = tuned.as_ref().zip(target).map(|(tuned, target)| {
+            let question = Question {
+                resolved: tuned.rung.resolved(),
+                facts: &facts,
+                target,
+                chosen: &tuned.chosen,
+            };
+            method::advise(&question, Frontiers::built_in())
+        });
         plan.chosen = tuned.map(|tuned| tuned.chosen);
         Ok(plan)
     }

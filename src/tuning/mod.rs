@@ -2,7 +2,8 @@
 //!
 //! - `ladder`: combinations of dials, one per number of water cells, in which no dial wastes what the others achieve;
 //! - `choose`: which rung meets a target error, from trial renders (probes) of the light;
-//! - `cost`: the predicted time of a plan, pass by pass.
+//! - `cost`: the predicted time of a plan, pass by pass;
+//! - `method`: which method to use for an error, and why not the others.
 //!
 //! Predictions are based on a [calibration](crate::calibration).
 //!
@@ -11,6 +12,7 @@
 pub mod choose;
 pub mod cost;
 pub mod ladder;
+pub mod method;
 
 use crate::scene::Scene;
 

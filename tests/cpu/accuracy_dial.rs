@@ -1,6 +1,7 @@
 //! Dials of a sweep: which are accepted, and their syntax.
 
 use caustica::config::Limits;
+use caustica::lab::study::comparison;
 use caustica::lab::study::dial::{Dial, DialError, Setting, dials, with_dials};
 use caustica::methods;
 use caustica::scene::{MethodChoice, ResolvedScene};
@@ -148,6 +149,7 @@ fn a_study_that_no_method_can_do_says_why_before_it_starts() {
         let settings = SweepSettings {
             dials: texts.iter().map(|t| Dial::parse(t).unwrap()).collect(),
             grid: true,
+            rungs: comparison::DEFAULT_RUNGS,
             runs: 1,
         };
         sweep::check::<std::convert::Infallible>(&scene, &settings, &Limits::default())

@@ -145,6 +145,7 @@ fn links() -> ReportLinks {
         errors: Some(format!("errors_{name}.png")),
     };
     ReportLinks {
+        methods: None,
         error_time: Some("error_time.svg".to_owned()),
         sweeps: ["beams", "steps", "hits"].map(sweep).to_vec(),
         json: Some("study.json".to_owned()),

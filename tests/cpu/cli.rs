@@ -9,8 +9,9 @@ use caustica::config::AdapterPolicy;
 use caustica::methods;
 use caustica::plan::{Plan, PlannedPass, PlannedSlot};
 use caustica::render::{SelfCheck, SelfCheckItem};
-use caustica::stats::{AbsentPass, ChosenDials};
+use caustica::stats::{AbsentPass, ChosenDials, MethodAdvice, OtherMethod};
 use clap::{CommandFactory, Parser};
+use serde_json::json;
 
 fn parsed(words: &[&str]) -> Result<Cli, clap::Error> {
     Cli::try_parse_from(std::iter::once("caustica").chain(words.iter().copied()))
@@ -212,6 +213,7 @@ fn a_plan_reads_well() {
         }],
         peak_bytes: 1536,
         chosen: None,
+        method_choice: None,
         warnings: Vec::new(),
     };
     assert_eq!(
@@ -241,6 +243,24 @@ fn a_plan_reads_well() {
         text.starts_with(chosen) && text.contains("1.98e-2 and 9 ms predicted: 2 trial renders"),
         "{text}"
     );
+    plan.method_choice = Some(MethodAdvice {
+        method: "quick".to_owned(),
+        dials: [("grains".to_owned(), json!(64))].into(),
+        reason: "it was faster".to_owned(),
+        expected_error: 0.02,
+        expected_ms: 4.0,
+        source: "measurements".to_owned(),
+        others: vec![OtherMethod {
+            method: "slow".to_owned(),
+            reason: "it was not".to_owned(),
+        }],
+    });
+    let advice = "Method for this error\n  quick     it was faster\n  dials     grains 64\n  \
+                  expected  error 2.00 %, 4 ms, from measurements\n  not slow  it was not\n\nPasses\n";
+    let text = plan::in_words(&plan);
+    assert!(text.contains(advice), "{text}");
+    let text = plan.to_string();
+    assert!(text.contains("  not slow: it was not\n"), "{text}");
 }
 
 #[test]

@@ -19,6 +19,7 @@ mod cli_notes;
 mod cli_program;
 mod cli_scene_file;
 mod cli_streams;
+mod comparison;
 mod experiment;
 mod field_files;
 #[path = "../support/field_files.rs"]
@@ -43,6 +44,7 @@ mod mesh_hierarchy;
 mod mesh_obj;
 mod mesh_shapes;
 mod mesh_store;
+mod method_advice;
 mod methods;
 mod metrics;
 mod mutants;

@@ -4,6 +4,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use caustica::frame::{Frame, FrameKind};
 use caustica::image::{Metadata, decode_exr, decode_png, encode};
+use caustica::lab::study::comparison;
 use caustica::lab::study::sweep::{self, StudyError, SweepSettings};
 use caustica::methods;
 use caustica::plan::{self, NothingCached, Plan, Wanted};
@@ -235,6 +236,7 @@ fn it_has_no_truth_and_no_study() {
     let settings = SweepSettings {
         dials: Vec::new(),
         grid: false,
+        rungs: comparison::DEFAULT_RUNGS,
         runs: 1,
     };
     let limits = caustica::config::Limits::default();

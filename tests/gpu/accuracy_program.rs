@@ -127,6 +127,9 @@ fn plan_says_what_was_chosen() {
         "predicted",
         "error ",
         "reason",
+        "Method for this error",
+        "expected",
+        "not photon",
     ] {
         assert!(chosen.contains(word), "{word} in {chosen}");
     }
@@ -165,4 +168,76 @@ fn render_says_what_was_chosen_and_how_good_it_is() {
     let picture = folder.0.join("plain.exr");
     let output = program("render", &["-o", picture.to_str().unwrap()], &folder.0);
     assert!(!said(&output).contains("accuracy"), "{}", said(&output));
+}
+
+#[test]
+fn compare_puts_methods_beside_each_other() {
+    let folder = Folder::new();
+    let (cache, out) = (folder.0.join("truths"), folder.0.join("methods"));
+    let mut words = vec!["--methods", "level_map,photon:photons=64,iterations=2"];
+    words.extend(["--settings", "2", "--runs", "1", "--truth-error", "0.05"]);
+    words.extend(["--points", "map", "-o", out.to_str().unwrap()]);
+    let output = program("compare", &words, &cache);
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    for part in [
+        "1 of 4: level_map, water_cells = 64",
+        "photon, photons 64, iterations 2: photon_map_texels 128",
+        "level_map: water_cells 128",
+        "is nearest to the truth",
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    for file in [
+        "study.md",
+        "study.csv",
+        "error_time.svg",
+        "error_time.png",
+        "methods.png",
+    ] {
+        assert!(out.join(file).is_file(), "{file} of {text}");
+    }
+    let found = study(&out);
+    assert!(found.is_comparison() && found.left_out.is_empty());
+    let errors: Vec<f64> = (found.sweeps.iter())
+        .flat_map(|sweep| sweep.points.iter().map(|point| point.error.relative_l1))
+        .collect();
+    println!("errors {errors:?}");
+    assert!(errors[1] < errors[0], "more cells are nearer: {errors:?}");
+    for sweep in &found.sweeps {
+        for point in &sweep.points {
+            assert!(
+                point.error.flip > 0.0 && point.cost.peak_bytes > 0,
+                "{point:?}"
+            );
+            assert!(point.cost.wall_ms.median > 0.0 && point.error.flux_bias.is_finite());
+        }
+    }
+    // What nobody can do is refused before the truth is computed.
+    for (methods, wanted) in [
+        ("magic", "unknown method"),
+        ("photon:search=clever", "`exact`"),
+        ("", "1 … 32"),
+    ] {
+        let words = [
+            "--methods",
+            methods,
+            "--truth-error",
+            "0.000001",
+            "-o",
+            "nowhere",
+        ];
+        let output = program("compare", &words, &cache);
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{methods}: {}",
+            said(&output)
+        );
+        assert!(
+            said(&output).contains(wanted),
+            "{wanted} in {}",
+            said(&output)
+        );
+    }
 }

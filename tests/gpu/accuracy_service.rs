@@ -86,6 +86,43 @@ async fn a_study_has_figures_plots_and_pictures() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn the_dial_method_compares_methods() {
+    let service = default_service().await;
+    let methods = json!({ "method": ["level_map", "photon:photons=64,iterations=2"] });
+    let compared = [("/dials", methods), ("/settings", json!(2))];
+    let reply = ask(&service, &study(&compared), "application/json").await;
+    let answer = reply.json();
+    assert_eq!(reply.status, 200, "{answer}");
+    let sweeps = answer["study"]["sweeps"].as_array().unwrap();
+    let names: Vec<&Value> = sweeps.iter().map(|sweep| &sweep["dial"]).collect();
+    assert_eq!(names, ["level_map", "photon, photons 64, iterations 2"]);
+    for sweep in sweeps {
+        assert_eq!(sweep["points"].as_array().unwrap().len(), 2, "{sweep}");
+    }
+    assert_eq!(sweeps[0]["series"]["method"], "level_map");
+    let plot = answer["error_against_time_svg"].as_str().unwrap();
+    assert!(plot.contains("photons 64"), "the plot names the series");
+    assert_eq!(answer["convergence_svg"], json!([]));
+    let sheets = answer["error_images_base64"].as_array().unwrap();
+    assert_eq!(sheets.len(), 1, "one sheet of all");
+    let sheet = STANDARD.decode(sheets[0].as_str().unwrap()).unwrap();
+    assert!(sheet.starts_with(PNG));
+    for (dials, settings, pointer) in [
+        (
+            json!({ "method": ["magic"] }),
+            json!(2),
+            "/scene/quality/method",
+        ),
+        (json!({ "method": ["level_map"] }), json!(7), "/settings"),
+        (json!({ "water_cells": [16] }), json!(2), "/settings"),
+    ] {
+        let changes = [("/dials", dials), ("/settings", settings)];
+        let reply = ask(&service, &study(&changes), "*/*").await;
+        assert_refused(&reply, 422, "invalid-scene", pointer);
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn the_accept_header_selects_the_format_of_a_study() {
     let service = default_service().await;
     for (media_type, starts_as) in [
@@ -279,12 +316,20 @@ async fn a_target_error_is_turned_into_dials_by_render_and_plan() {
         plan["chosen"]["water_cells"], chosen["water_cells"],
         "plan and render choose alike"
     );
+    let choice = &plan["method_choice"];
+    let named = choice["others"].as_array().unwrap().len();
+    assert_eq!(named + 1, caustica::methods::ALL.len(), "{choice}");
+    assert!(
+        choice["expected_error"].as_f64().unwrap() <= 0.1,
+        "{choice}"
+    );
     // Without a request for accuracy, nothing about it is reported.
     let plain = scene(&[]).to_string();
     let reply = service
         .post("/v1/plan", "application/json", "*/*", plain)
         .await;
-    assert!(reply.json()["chosen"].is_null());
+    let plan = reply.json();
+    assert!(plan["chosen"].is_null() && plan["method_choice"].is_null());
 }
 
 #[tokio::test(flavor = "multi_thread")]

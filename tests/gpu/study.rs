@@ -1,6 +1,7 @@
 //! Studies of accuracy with the real renderer, from sweep to report, from the library, the command line and HTTP.
 
 use caustica::config::{Limits, RenderConfig};
+use caustica::lab::study::comparison;
 use caustica::lab::study::dial::Dial;
 use caustica::lab::study::report::write_study;
 use caustica::lab::study::study::{Study, StudyImages};
@@ -39,6 +40,7 @@ fn study(
             .map(|text| Dial::parse(text).unwrap())
             .collect(),
         grid,
+        rungs: comparison::DEFAULT_RUNGS,
         runs: 2,
     };
     run_study(
@@ -148,7 +150,7 @@ fn bad_and_too_many_settings_are_refused_before_any_time_is_spent() {
         "map_texels=20,21,22,23,24,25,26,27",
     ];
     let error = study(renderer, &scene, &truth, &dials, true).unwrap_err();
-    assert!(matches!(error, StudyError::TooMany(_)), "{error}");
+    assert!(matches!(error, StudyError::TooMany { .. }), "{error}");
 }
 
 #[test]

@@ -25,8 +25,10 @@ use super::super::problem::AccuracyProblems;
 use super::super::state::AppState;
 use crate::frame::Frame;
 use crate::gpu_queue::JobError;
+use crate::lab::study::comparison;
 use crate::lab::study::dial::Dial;
-use crate::lab::study::error_images::error_images;
+use crate::lab::study::equal_time;
+use crate::lab::study::error_images::{error_images, method_images};
 use crate::lab::study::plot::{convergence, error_against_time};
 use crate::lab::study::report::{self, ReportLinks};
 use crate::lab::study::study::{Study, StudyImages};
@@ -58,12 +60,20 @@ pub struct AccuracyRequest {
     pub scene: Scene,
     /// Fields of `quality` and dials of methods, each with the values to sweep, 1 … 32 per dial. Default: the dials that matter
     /// to the scene.
+    ///
+    /// `method` as the only dial, without `grid`, compares methods: each is rendered at several `settings` of its own, at which its
+    /// numbers grow together. Its values are `all` (every method with every word of its dials), a method's name, `name:all` (with every
+    /// word of its dials), or a name with dials as `name:dial=value,dial=value`.
     #[serde(default)]
     #[schema(value_type = BTreeMap<String, Vec<Object>>)]
     pub dials: BTreeMap<String, Vec<Value>>,
     /// Whether to sweep all combinations of the dials instead of one dial at a time. Default false. At most 64 settings in all.
     #[serde(default)]
     pub grid: bool,
+    /// Settings of each method of a comparison, 2 … 6: of 64, 128 … water cells, other dials in proportion. Default 4.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 2, maximum = 6)]
+    pub settings: Option<u32>,
     /// Timed runs of each setting, 1 … 100. Default 3.
     #[serde(default = "default_runs")]
     #[schema(minimum = 1, maximum = 100)]
@@ -89,9 +99,10 @@ pub struct AccuracyAnswer {
     pub study: Study,
     /// Error against time (SVG).
     pub error_against_time_svg: String,
-    /// Convergence of each sweep (SVG), in the order of the sweeps.
+    /// Convergence of each sweep (SVG), in the order of the sweeps. Empty in a comparison of methods.
     pub convergence_svg: Vec<String>,
-    /// Renders, reference and errors side by side for each sweep (PNG, base64), in the order of the sweeps.
+    /// Renders, reference and errors side by side for each sweep (PNG, base64), in the order of the sweeps. In a comparison of methods one
+    /// picture, of each method in about the same time.
     pub error_images_base64: Vec<String>,
 }
 
@@ -165,6 +176,19 @@ fn read(body: &Bytes, state: &AppState) -> Result<(ResolvedScene, SweepSettings,
             format!("an integer, 1 … {MOST_RUNS}"),
         ));
     }
+    if let Some(settings) = request.settings
+        && !comparison::RUNGS.contains(&settings)
+    {
+        issues.push(Issue::invalid(
+            "/settings",
+            format!("{settings} is out of range"),
+            format!(
+                "an integer, {} … {}",
+                comparison::RUNGS.start(),
+                comparison::RUNGS.end()
+            ),
+        ));
+    }
     if !(1e-6..=0.1).contains(&request.truth_error) {
         let detail = format!("{} is out of range", request.truth_error);
         issues.push(Issue::invalid(
@@ -197,8 +221,17 @@ fn read(body: &Bytes, state: &AppState) -> Result<(ResolvedScene, SweepSettings,
             let settings = SweepSettings {
                 dials,
                 grid: request.grid,
+                rungs: request.settings.unwrap_or(comparison::DEFAULT_RUNGS),
                 runs: request.runs,
             };
+            if request.settings.is_some() && !settings.is_comparison() {
+                let issue = Issue::invalid(
+                    "/settings",
+                    "settings are those of a comparison of methods",
+                    "no `settings`, or `method` as the only dial and no `grid`",
+                );
+                return Err(SceneError::from(issue).into());
+            }
             // Check this before the reference is computed, which may take minutes.
             sweep::check(&resolved, &settings, state.limits()).map_err(refused)?;
             Ok((resolved, settings, request.truth_error))
@@ -267,7 +300,7 @@ fn refused(error: StudyError<JobError>) -> ApiError {
             issues: error.issues.into_iter().map(in_scene).collect(),
         }
         .into(),
-        StudyError::TooMany(_) | StudyError::TooLarge(_) => SceneError {
+        StudyError::TooMany { .. } | StudyError::TooLarge(_) => SceneError {
             issues: vec![Issue::invalid(
                 "/dials",
                 error.to_string(),
@@ -324,6 +357,11 @@ fn respond(
                 convergence_svg: Vec::new(),
                 error_images_base64: Vec::new(),
             };
+            if let Some(limit_ms) = equal_time::limit_ms(study).filter(|_| study.is_comparison()) {
+                let sheet = method_images(study, images, limit_ms).map_err(|e| defect(&e))?;
+                answer.error_images_base64.push(STANDARD.encode(sheet));
+                return Ok(Json(answer).into_response());
+            }
             for sweep in 0..study.sweeps.len() {
                 let plot = convergence(study, sweep).map_err(|e| defect(&e))?;
                 answer.convergence_svg.push(plot.svg);

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::comparison::{METHOD_DIAL, choice, split_list};
 use crate::config::Limits;
 use crate::methods;
 use crate::scene::overrides::{self, Field};
@@ -86,7 +87,7 @@ impl Dial {
     }
 
     /// Reads `water_cells=64..1024` (doubling), `split_levels=0..4` (counting, up to 8) or `name=a,b,c`; `-` and `_` in names
-    /// are the same.
+    /// are the same. A method may have dials: `method=planes:planes=9,slicing=smart,volumetric`.
     ///
     /// # Errors
     /// [`DialError`].
@@ -100,6 +101,7 @@ impl Dial {
             Some((low, high)) => {
                 range(low, high).ok_or_else(|| DialError::Range(values.to_owned()))?
             }
+            None if name == METHOD_DIAL => split_list(values),
             None => values
                 .split(',')
                 .map(|value| value.trim().to_owned())
@@ -177,10 +179,17 @@ pub fn with_dials(
         Some(field) => field.pointer.clone(),
         None => format!("/quality/{name}"),
     };
-    let changes: Vec<(String, String)> = dials
-        .iter()
-        .map(|(name, text)| (pointer_to(name), text.clone()))
-        .collect();
+    let mut changes: Vec<(String, String)> = Vec::new();
+    for (name, text) in dials {
+        if name == METHOD_DIAL && text.contains(':') {
+            let choice = choice(text)?;
+            changes.push((pointer_to(name), choice.kind.unwrap_or_default()));
+            let own = choice.dials.iter();
+            changes.extend(own.map(|(dial, value)| (pointer_to(dial), value.to_string())));
+        } else {
+            changes.push((pointer_to(name), text.clone()));
+        }
+    }
     overrides::apply(&mut value, &changes);
     let mut scene = Scene::from_value(value)?;
     let misfits = methods::misfits(&scene.quality);

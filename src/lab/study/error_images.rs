@@ -1,4 +1,4 @@
-//! Contact sheet of a sweep: each setting's render, its errors, and their visibility.
+//! Contact sheets: of each setting of a sweep, or of what each method achieves within a time, the render, its errors, and their visibility.
 //!
 //! One column per setting: the render, the signed error (blue: too dark, red: too bright), the ꟻLIP map. The first column has
 //! the truth and the colour bars. All colours mean the same in all columns.
@@ -6,18 +6,16 @@
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::colour_map::{diverging, magma};
+use super::equal_time;
+use super::error_tiles::{Column, mean, picture, scale};
 use super::plot::PlotError;
 use super::plot::canvas::TextStyle;
 use super::plot::palette::{INK, SOFT_INK};
 use super::resize::Fit;
 use super::sheet::{Caption, Sheet, Tile};
-use super::study::{Study, StudyImages};
+use super::study::{Point, Study, StudyImages};
 use super::words;
 use crate::accuracy::LinearImage;
-use crate::accuracy::display::{display_linear, display_rgb};
-use crate::accuracy::flip::flip;
-use crate::accuracy::metrics::MetricError;
-use crate::image::tone::{code, srgb_from_linear};
 
 /// Settings that one sheet has room for.
 pub const MOST_COLUMNS: usize = 8;
@@ -47,6 +45,76 @@ pub fn error_images(
     sweep_index: usize,
 ) -> Result<Vec<u8>, PlotError> {
     let shown = shown_images(study, images, sweep_index)?;
+    let sweep = &study.sweeps[sweep_index];
+    let indices = shown_indices(sweep.points.len());
+    let columns = shown.into_iter().zip(&indices).map(|(image, index)| {
+        let point = &sweep.points[*index];
+        (image, words::named_setting(sweep, point), point)
+    });
+    let mut remarks = Vec::new();
+    if sweep.points.len() > MOST_COLUMNS {
+        let hidden = (0..sweep.points.len()).filter(|index| !indices.contains(index));
+        let rest: Vec<String> = hidden
+            .map(|index| words::setting(sweep, &sweep.points[index]))
+            .collect();
+        remarks.push(format!("Not shown, for lack of room: {}.", rest.join("; ")));
+    }
+    let title = format!("Errors by setting of {}", sweep.dial);
+    draw(study, images, columns.collect(), &title, remarks)
+}
+
+/// Draws the setting of each method of a comparison that takes about `limit_ms` ([`equal_time::standings`]) as a PNG file, a column per
+/// method, at most [`MOST_COLUMNS`]. Remarks name methods that take longer, and those that cannot render the scene.
+///
+/// # Errors
+///
+/// As [`error_images`]; [`PlotError::Empty`] if it is no comparison.
+pub fn method_images(
+    study: &Study,
+    images: &StudyImages,
+    limit_ms: f64,
+) -> Result<Vec<u8>, PlotError> {
+    let standings = equal_time::standings(study, limit_ms);
+    if standings.is_empty() {
+        return Err(PlotError::Empty("the comparison of methods".to_owned()));
+    }
+    let mut columns = Vec::new();
+    let mut slower = Vec::new();
+    for standing in standings.iter().take(MOST_COLUMNS) {
+        let found = all_images(study, images, standing.sweep_index)?;
+        let sweep = standing.sweep;
+        columns.push((
+            &found[standing.point_index],
+            sweep.dial.clone(),
+            standing.point,
+        ));
+        if standing.error_in_time.is_none() {
+            slower.push(sweep.dial.as_str());
+        }
+    }
+    let mut remarks = Vec::new();
+    if !slower.is_empty() {
+        remarks.push(format!(
+            "Takes longer at every setting: {}.",
+            slower.join("; ")
+        ));
+    }
+    let absent: Vec<&str> = study.left_out.iter().map(|l| l.series.as_str()).collect();
+    if !absent.is_empty() {
+        remarks.push(format!("Cannot render this: {}.", absent.join("; ")));
+    }
+    let title = format!("Methods in about {} ms", words::ms(limit_ms));
+    draw(study, images, columns, &title, remarks)
+}
+
+/// Draws columns (image, name, figures) beside the truth.
+fn draw(
+    study: &Study,
+    images: &StudyImages,
+    shown: Vec<(&LinearImage, String, &Point)>,
+    title: &str,
+    remarks: Vec<String>,
+) -> Result<Vec<u8>, PlotError> {
     let (width, height) = (images.truth.width as usize, images.truth.height as usize);
     let fit = Fit::new(width, height, TILE);
     let layout = Layout {
@@ -56,7 +124,7 @@ pub fn error_images(
     let mean_w_m2 = mean(&images.truth)?;
     let columns = shown
         .iter()
-        .map(|image| Column::new(image, images, mean_w_m2))
+        .map(|(image, _, _)| Column::new(image, images, mean_w_m2))
         .collect::<Result<Vec<_>, _>>()?;
     let scale = scale(&columns);
 
@@ -76,7 +144,8 @@ pub fn error_images(
         }
     }
     lay_bars(&mut sheet, layout, scale);
-    write_captions(&mut sheet, layout, study, sweep_index);
+    let names = shown.into_iter().map(|(_, name, point)| (name, point));
+    write_captions(&mut sheet, layout, study, title, names.collect(), remarks);
     sheet.finish()
 }
 
@@ -86,6 +155,17 @@ fn shown_images<'a>(
     images: &'a StudyImages,
     sweep_index: usize,
 ) -> Result<Vec<&'a LinearImage>, PlotError> {
+    let found = all_images(study, images, sweep_index)?;
+    let shown = shown_indices(found.len()).into_iter();
+    Ok(shown.map(|index| &found[index]).collect())
+}
+
+/// The images of a sweep's settings, once all fit the study.
+fn all_images<'a>(
+    study: &Study,
+    images: &'a StudyImages,
+    sweep_index: usize,
+) -> Result<&'a [LinearImage], PlotError> {
     let Some(sweep) = study.sweeps.get(sweep_index) else {
         return Err(PlotError::NoSweep {
             index: sweep_index,
@@ -114,8 +194,7 @@ fn shown_images<'a>(
             sweep.dial, other.width, other.height, size.0, size.1
         )));
     }
-    let shown = shown_indices(found.len()).into_iter();
-    Ok(shown.map(|index| &found[index]).collect())
+    Ok(found)
 }
 
 /// Which of a number of settings are shown.
@@ -126,104 +205,6 @@ fn shown_indices(count: usize) -> Vec<usize> {
     (0..MOST_COLUMNS)
         .map(|column| column * (count - 1) / (MOST_COLUMNS - 1))
         .collect()
-}
-
-/// Errors of one image, value by value.
-struct Column<'a> {
-    image: &'a LinearImage,
-    /// Mean of the channels' E − truth, relative to the mean of the truth.
-    signed: Vec<[f64; 1]>,
-    flip: Vec<[f64; 1]>,
-}
-
-impl<'a> Column<'a> {
-    fn new(
-        image: &'a LinearImage,
-        images: &StudyImages,
-        mean_w_m2: f64,
-    ) -> Result<Self, PlotError> {
-        let (truth, white) = (&images.truth, images.white_w_m2);
-        let shown = (display_rgb(image, white)?, display_rgb(truth, white)?);
-        let map = flip(&shown.0, &shown.1, truth.width, truth.height)?.map;
-        let pairs = image.rgb.iter().zip(&truth.rgb);
-        let signed = pairs.map(|(a, b)| {
-            let sum: f64 = a.iter().zip(b).map(|(a, b)| a - b).sum();
-            [sum / 3.0 / mean_w_m2]
-        });
-        Ok(Self {
-            image,
-            signed: signed.collect(),
-            flip: map.iter().map(|v| [f64::from(*v)]).collect(),
-        })
-    }
-
-    fn size(&self) -> (usize, usize) {
-        (self.image.width as usize, self.image.height as usize)
-    }
-
-    fn signed_tile(&self, fit: Fit, scale: f64) -> Tile {
-        tile(&self.signed, self.size(), fit, |[v]| diverging(v / scale))
-    }
-
-    fn flip_tile(&self, fit: Fit) -> Tile {
-        tile(&self.flip, self.size(), fit, |[v]| magma(v))
-    }
-
-    /// 99th percentile of the absolute signed error.
-    fn extent(&self) -> f64 {
-        let mut errors: Vec<f64> = self.signed.iter().map(|[v]| v.abs()).collect();
-        let index = (errors.len() * 99 / 100).min(errors.len() - 1);
-        *errors.select_nth_unstable_by(index, f64::total_cmp).1
-    }
-}
-
-/// End of the signed scale, as a share of the truth's mean: the middle one of the settings' 99th percentiles, rounded up to 1,
-/// 2 or 5. So coarse settings are clipped and fine ones are still visible.
-fn scale(columns: &[Column]) -> f64 {
-    let mut extents: Vec<f64> = columns.iter().map(Column::extent).collect();
-    extents.sort_by(f64::total_cmp);
-    let middle = extents[(extents.len() - 1) / 2].max(1e-6);
-    let power = 10f64.powi(middle.log10().floor() as i32);
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * power);
-    let above = steps.into_iter().find(|step| *step >= middle);
-    above.unwrap_or(10.0 * power)
-}
-
-/// Mean over all values, W/m².
-fn mean(truth: &LinearImage) -> Result<f64, PlotError> {
-    let sum: f64 = truth.rgb.as_flattened().iter().sum();
-    if sum > 0.0 && sum.is_finite() {
-        Ok(sum / truth.rgb.as_flattened().len() as f64)
-    } else if sum.is_finite() {
-        Err(MetricError::BlackTruth.into())
-    } else {
-        // Reports which value is not finite.
-        let all = display_linear(truth, 1.0);
-        Err(all.err().unwrap_or(MetricError::BlackTruth).into())
-    }
-}
-
-/// The map as a picture. Light is averaged before the curve, not after.
-fn picture(image: &LinearImage, white_w_m2: f64, fit: Fit) -> Result<Tile, PlotError> {
-    let light = display_linear(image, white_w_m2)?;
-    let size = (image.width as usize, image.height as usize);
-    Ok(tile(&light, size, fit, |pixel| {
-        pixel.map(|v| code(srgb_from_linear(v), 255) as u8)
-    }))
-}
-
-fn tile<const N: usize>(
-    values: &[[f64; N]],
-    (width, height): (usize, usize),
-    fit: Fit,
-    colour: impl Fn([f64; N]) -> [u8; 3],
-) -> Tile {
-    let fitted = fit.apply(values, width, height);
-    Tile {
-        width: fit.size(width),
-        height: fit.size(height),
-        pixels: fitted.into_iter().map(colour).collect(),
-    }
 }
 
 /// The layout of the sheet.
@@ -305,8 +286,14 @@ fn lay_bars(sheet: &mut Sheet, layout: Layout, scale: f64) {
     }
 }
 
-fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index: usize) {
-    let sweep = &study.sweeps[sweep_index];
+fn write_captions(
+    sheet: &mut Sheet,
+    layout: Layout,
+    study: &Study,
+    title: &str,
+    columns: Vec<(String, &Point)>,
+    more_remarks: Vec<String>,
+) {
     let wide = (layout.width() - 2 * MARGIN) as f64;
     let mut write = |text: String, (x, y): (f64, f64), style: TextStyle, width: f64| {
         sheet.write(Caption {
@@ -317,7 +304,7 @@ fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index:
         });
     };
     let left = MARGIN as f64;
-    let mut title = format!("Errors by setting of {}", sweep.dial);
+    let mut title = title.to_owned();
     if !study.scene.is_empty() {
         title += &format!(": {}", study.scene);
     }
@@ -329,11 +316,8 @@ fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index:
     let truth = format!("own error {}", words::percent(study.truth.relative_error));
     write("truth".to_owned(), (left, y + 8.0), strong, narrow);
     write(truth, (left, y + 28.0), soft, narrow);
-    let indices = shown_indices(sweep.points.len());
-    for (column, index) in indices.iter().enumerate() {
-        let point = &sweep.points[*index];
+    for (column, (name, point)) in columns.into_iter().enumerate() {
         let x = layout.spot(column + 1, 0).0 as f64;
-        let name = words::named_setting(sweep, point);
         let figures = format!(
             "L1 {} · {} ms",
             words::percent(point.error.relative_l1),
@@ -345,17 +329,10 @@ fn write_captions(sheet: &mut Sheet, layout: Layout, study: &Study, sweep_index:
 
     let y = (layout.height() - REMARKS) as f64;
     let mut remarks = vec![
-        "Blue: too dark, red: too bright.".to_owned(),
-        "Stronger errors have the colour of the scale's end.".to_owned(),
+        "Blue: too dark, red: too bright. Stronger errors have the colour of the scale's end."
+            .to_owned(),
     ];
-    if sweep.points.len() > MOST_COLUMNS {
-        let hidden = (0..sweep.points.len()).filter(|index| !indices.contains(index));
-        let rest: Vec<String> = hidden
-            .map(|index| words::setting(sweep, &sweep.points[index]))
-            .collect();
-        let rest = rest.join("; ");
-        remarks.push(format!("Not shown, for lack of room: {rest}."));
-    }
+    remarks.extend(more_remarks);
     for (line, remark) in remarks.into_iter().enumerate() {
         let spot = (left, y + 8.0 + 17.0 * line as f64);
         write(remark, spot, soft, wide);

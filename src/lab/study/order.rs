@@ -57,8 +57,12 @@ pub fn level_number(sweep: &Sweep, point: &Point) -> Option<f64> {
     point.dials.get(&sweep.dial).and_then(Value::as_f64)
 }
 
-/// Value of the sweep's one dial at a point, as a number above 0; nothing for several dials, words, switches and 0.
+/// Value of the sweep's one dial at a point, as a number above 0; nothing for several dials, words, switches and 0. In a comparison,
+/// the point's scale.
 pub fn dial_number(sweep: &Sweep, point: &Point) -> Option<f64> {
+    if sweep.series.is_some() {
+        return point.scale.filter(|scale| *scale > 0.0);
+    }
     let value = point.dials.get(&sweep.dial).and_then(Value::as_f64)?;
     (point.dials.len() == 1 && value > 0.0).then_some(value)
 }

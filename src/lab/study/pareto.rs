@@ -8,20 +8,26 @@ use super::study::{Point, Study};
 /// Time is the median of [`super::study::CostFigures::wall_ms`], the error [`super::study::ErrorFigures::relative_l1`]; a point
 /// without finite figures is never on the front.
 pub fn mark_pareto_front(study: &mut Study) {
-    let all: Vec<(f64, f64)> = study
-        .sweeps
-        .iter()
-        .flat_map(|sweep| sweep.points.iter().map(figures))
-        .collect();
-    for point in study.sweeps.iter_mut().flat_map(|s| s.points.iter_mut()) {
-        let own = figures(point);
-        let finite = own.0.is_finite() && own.1.is_finite();
-        point.on_pareto_front = finite && !all.iter().any(|other| beats(*other, own));
+    let points = study.sweeps.iter().flat_map(|sweep| &sweep.points);
+    let front = front(&points.map(figures).collect::<Vec<_>>());
+    let points = study.sweeps.iter_mut().flat_map(|s| s.points.iter_mut());
+    for (point, on_front) in points.zip(front) {
+        point.on_pareto_front = on_front;
     }
 }
 
+/// Whether each of some settings, given as time and error, is on their front.
+pub fn front(all: &[(f64, f64)]) -> Vec<bool> {
+    all.iter()
+        .map(|own| {
+            let finite = own.0.is_finite() && own.1.is_finite();
+            finite && !all.iter().any(|other| beats(*other, *own))
+        })
+        .collect()
+}
+
 /// Time and error.
-fn figures(point: &Point) -> (f64, f64) {
+pub fn figures(point: &Point) -> (f64, f64) {
     (point.cost.wall_ms.median, point.error.relative_l1)
 }
 

@@ -24,10 +24,20 @@ pub struct Study {
     pub cores: u32,
     /// What the renders are compared with.
     pub truth: TruthFigures,
-    /// One sweep per dial, or a single one over all combinations.
+    /// One sweep per dial, a single one over all combinations, or one per series of a comparison of methods.
     pub sweeps: Vec<Sweep>,
+    /// Methods of a comparison that cannot render the scene, with their reasons.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOut>,
     /// What was skipped, clamped or could not be measured.
     pub warnings: Vec<Warning>,
+}
+
+impl Study {
+    /// Whether it compares methods, each at settings of its own.
+    pub fn is_comparison(&self) -> bool {
+        self.sweeps.iter().any(|sweep| sweep.series.is_some())
+    }
 }
 
 /// The float64 reference behind a study.
@@ -56,11 +66,14 @@ pub struct TruthFigures {
 /// The settings of one sweep, in order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Sweep {
-    /// What varies: a dial of `quality`, or several joined by ` × `.
+    /// What varies: a dial of `quality`, or several joined by ` × `. In a comparison the method, with words that are not its defaults.
     pub dial: String,
+    /// The method, in a comparison.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub series: Option<SeriesOf>,
     /// What was measured at each setting.
     pub points: Vec<Point>,
-    /// Order of convergence: the error falls as the dial to minus this power. Fitted to the settings whose error is at least three
+    /// Order of convergence: the error falls as the dial (in a comparison `scale`) to minus this power. Fitted to the settings whose error is at least three
     /// times the truth's; absent where the dial is no number or counts halvings, or fewer than two settings remain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<f64>,
@@ -70,11 +83,34 @@ pub struct Sweep {
     pub factor_per_level: Option<f64>,
 }
 
+/// The method of a series in a comparison.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct SeriesOf {
+    /// Its name.
+    pub method: String,
+    /// The dial whose value names a setting.
+    pub chief: String,
+}
+
+/// A method of a comparison that cannot render the scene.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct LeftOut {
+    /// The series, as [`Sweep::dial`].
+    pub series: String,
+    /// Its method.
+    pub method: String,
+    /// Why.
+    pub reason: String,
+}
+
 /// One setting of the dials.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Point {
     /// The dials that this sweep sets, with their values.
     pub dials: BTreeMap<String, Value>,
+    /// In a comparison, where on the method's ladder: its numbers are in proportion to this, 1 with 256 water cells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
     /// How far it is from the truth.
     pub error: ErrorFigures,
     /// What it costs.

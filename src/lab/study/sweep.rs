@@ -2,24 +2,25 @@
 
 use std::time::{Duration, Instant};
 
-use super::dial::{Dial, Setting, as_json, with_dials};
+use super::dial::{Setting, as_json};
 use super::figures::error_figures;
 use super::order::fit_orders;
 use super::pareto::mark_pareto_front;
+use super::settings::{left_out, plan};
 use super::study::{
     CostFigures, PassCost, Point, SpreadMs, Study, StudyImages, Sweep, TruthFigures,
 };
+use super::words;
 use crate::accuracy::LinearImage;
 use crate::accuracy::metrics::MetricError;
 use crate::config::Limits;
 use crate::frame::Frame;
 use crate::reference::{ReferenceError, Truth, TruthKind, shadow_edge};
-use crate::scene::{Issue, LayerName, Output, ResolvedScene, SceneError};
+use crate::scene::{LayerName, MethodChoice, ResolvedScene, SceneError};
 use crate::stats::{Stats, Warning};
-use crate::tuning::ladder;
 
-/// Most settings of a study.
-pub const MOST_SETTINGS: usize = 64;
+pub use super::settings::{MOST_COMPARED_SETTINGS, MOST_SETTINGS, SweepSettings, check};
+
 /// Most values (texels or pixels, all settings together) that a study holds.
 pub const MOST_COMPARED: usize = 32_000_000;
 /// Distance from a shadow's edge, in texels (for a view, pixels), within which the error is reported separately.
@@ -29,17 +30,8 @@ pub const SHADOW_EDGE_TEXELS: u32 = 2;
 const FEWEST_RUNS: usize = 3;
 /// Time above which a setting is slow.
 const LONG_ENOUGH: Duration = Duration::from_secs(1);
-
-/// What to sweep.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SweepSettings {
-    /// The dials.
-    pub dials: Vec<Dial>,
-    /// Sweep all combinations of the dials' values, instead of one dial at a time with the others as in the scene.
-    pub grid: bool,
-    /// Timed runs of each setting, after one that warms up, 1 …; of settings that take over a second only three.
-    pub runs: u32,
-}
+/// Time of a frame, ms, after which a method of a comparison is not rendered at more costly settings.
+const SLOW_MS: f64 = 2000.0;
 
 /// Why there is no study.
 #[derive(Debug, thiserror::Error)]
@@ -47,9 +39,14 @@ pub enum StudyError<E: std::error::Error> {
     /// A dial's value is not accepted, or nothing of the scene can be compared.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// More than [`MOST_SETTINGS`].
-    #[error("the dials have {0} settings; at most {MOST_SETTINGS} are accepted")]
-    TooMany(usize),
+    /// More than [`MOST_SETTINGS`], or [`MOST_COMPARED_SETTINGS`] of methods.
+    #[error("the dials have {total} settings; at most {most} are accepted")]
+    TooMany {
+        /// How many there are.
+        total: usize,
+        /// How many are accepted.
+        most: usize,
+    },
     /// More than [`MOST_COMPARED`].
     #[error(
         "{0} values would have to be held (texels or pixels times settings); at most {MOST_COMPARED} are accepted"
@@ -103,10 +100,9 @@ pub fn run_study<E: std::error::Error>(
     render: &mut Render<'_, E>,
     progress: &mut Progress<'_>,
 ) -> Result<(Study, StudyImages), StudyError<E>> {
-    let plan = settings_of(settings);
     // Every setting is checked before any time is spent.
-    let scenes = scenes_of(&plan, resolved, limits)?;
-    let total = scenes.len();
+    let plan = plan(resolved, settings, limits)?;
+    let total = plan.iter().map(|series| series.settings.len()).sum();
     let values = truth.irradiance.len().saturating_mul(total);
     if values > MOST_COMPARED {
         return Err(StudyError::TooLarge(values));
@@ -133,30 +129,42 @@ pub fn run_study<E: std::error::Error>(
             rgb: truth.irradiance.clone(),
         },
         points: Vec::new(),
-        white_w_m2: std::f64::consts::PI * crate::methods::facts(resolved)?.lights.white_radiance,
+        white_w_m2: white_w_m2(resolved, settings)?,
     };
-    let mut scenes = scenes.into_iter();
     let mut done = 0;
-    for (dial, settings_here) in &plan {
+    for series in &plan {
+        if let Some(reason) = series.reason_against() {
+            study.left_out.push(reason);
+            done += series.settings.len();
+            continue;
+        }
         let mut sweep = Sweep {
-            dial: dial.clone(),
+            dial: series.name.clone(),
+            series: series.of.clone(),
             ..Sweep::default()
         };
         let mut sweep_images = Vec::new();
-        for (dials, scene) in settings_here.iter().zip(scenes.by_ref()) {
-            let words = in_words(dials);
+        for planned in &series.settings {
+            let words = series.setting_in_words(planned);
             if !progress(done, total, &words) {
                 return Err(StudyError::Cancelled);
             }
             done += 1;
-            let scene = match scene {
+            let scene = match &planned.scene {
                 Setting::Scene(scene) => scene,
                 Setting::LeftOut(reason) => {
-                    study.warnings.push(left_out(&words, &reason));
+                    study.warnings.push(left_out(&words, reason));
                     continue;
                 }
             };
-            match measure(&scene, settings.runs, render) {
+            if let Some(reason) = too_slow(&sweep) {
+                let message = format!("{words} was left out: {reason}");
+                study
+                    .warnings
+                    .push(Warning::new("setting_left_out", message));
+                continue;
+            }
+            match measure(scene, settings.runs, render) {
                 Ok((frame, costs)) => {
                     let image = compared_image(&frame, truth)?;
                     let mut error = error_figures(
@@ -168,11 +176,12 @@ pub fn run_study<E: std::error::Error>(
                     )?;
                     error.estimated = frame.stats.accuracy.and_then(|a| a.estimated_error);
                     study.adapter = frame.stats.adapter;
+                    let dials = planned.dials.iter();
                     sweep.points.push(Point {
                         dials: dials
-                            .iter()
                             .map(|(name, text)| (name.clone(), as_json(text)))
                             .collect(),
+                        scale: planned.scale,
                         error,
                         cost: cost_figures(&costs),
                         on_pareto_front: false,
@@ -193,7 +202,11 @@ pub fn run_study<E: std::error::Error>(
         }
     }
     if study.sweeps.is_empty() {
-        let reasons: Vec<String> = study.warnings.into_iter().map(|w| w.message).collect();
+        let against = study.left_out.into_iter();
+        let mut reasons: Vec<String> = against
+            .map(|left| format!("{}: {}", left.series, left.reason))
+            .collect();
+        reasons.extend(study.warnings.into_iter().map(|w| w.message));
         return Err(StudyError::NothingLeft(reasons.join("; ")));
     }
     progress(total, total, "done");
@@ -202,141 +215,26 @@ pub fn run_study<E: std::error::Error>(
     Ok((study, images))
 }
 
-/// Checks that [`run_study`] makes before it renders, for callers that have to compute a truth first.
-///
-/// # Errors
-/// [`StudyError::Scene`] where a dial's value is not accepted or the output has no light, [`StudyError::TooMany`], [`StudyError::NothingLeft`] where no method can do
-/// its setting.
-pub fn check<E: std::error::Error>(
-    resolved: &ResolvedScene,
-    settings: &SweepSettings,
-    limits: &Limits,
-) -> Result<(), StudyError<E>> {
-    if resolved.scene.output.is_water_map() {
-        return Err(StudyError::Scene(SceneError::from(Issue::invalid(
-            "/output/kind",
-            "a study compares light, and a map of the water has none",
-            "`view` or `irradiance_map`",
-        ))));
+/// Irradiance, W/m², that the pictures show as white. It does not depend on the method, so that of a comparison may refuse the scene.
+fn white_w_m2(resolved: &ResolvedScene, settings: &SweepSettings) -> Result<f64, SceneError> {
+    let mut scene = resolved.clone();
+    if settings.is_comparison() {
+        scene.scene.quality.method = MethodChoice::default();
     }
-    let plan = settings_of(settings);
-    let scenes = scenes_of(&plan, resolved, limits)?;
-    let all = plan.iter().flat_map(|(_, settings)| settings);
-    let reasons: Option<Vec<String>> = all
-        .zip(&scenes)
-        .map(|(dials, setting)| match setting {
-            Setting::Scene(_) => None,
-            Setting::LeftOut(reason) => Some(left_out(&in_words(dials), reason).message),
-        })
-        .collect();
-    match reasons {
-        Some(reasons) if !reasons.is_empty() => Err(StudyError::NothingLeft(reasons.join("; "))),
-        _ => Ok(()),
-    }
+    let lights = crate::methods::facts(&scene)?.lights;
+    Ok(std::f64::consts::PI * lights.white_radiance)
 }
 
-fn left_out(setting: &str, reason: &str) -> Warning {
-    let message = format!("{setting} cannot be rendered: {reason}");
-    Warning::new("setting_left_out", message)
-}
-
-/// The scene with each setting, in order.
-fn scenes_of<E: std::error::Error>(
-    plan: &[(String, Vec<DialTexts>)],
-    resolved: &ResolvedScene,
-    limits: &Limits,
-) -> Result<Vec<Setting>, StudyError<E>> {
-    let total = plan.iter().map(|(_, settings)| settings.len()).sum();
-    if total > MOST_SETTINGS {
-        return Err(StudyError::TooMany(total));
-    }
-    let base = with_irradiance(resolved);
-    let settings = plan.iter().flat_map(|(_, settings)| settings);
-    settings
-        .map(|dials| {
-            let scene = with_dials(&base, dials, limits)?;
-            if let Setting::Scene(scene) = &scene {
-                refuse_overruled(scene, dials)?;
-            }
-            Ok(scene)
-        })
-        .collect()
-}
-
-/// Refuses to sweep a dial that the program would choose itself: every setting would be the same.
-fn refuse_overruled(scene: &ResolvedScene, dials: &[(String, String)]) -> Result<(), SceneError> {
-    let quality = &scene.scene.quality;
-    let target = match (quality.target_error, quality.time_budget_ms) {
-        (Some(_), _) => "target_error",
-        (_, Some(_)) => "time_budget_ms",
-        _ => return Ok(()),
-    };
-    let is_chosen = |(name, _): &&(String, String)| ladder::sets(name, &scene.scene.output);
-    match dials.iter().find(is_chosen) {
-        None => Ok(()),
-        Some((name, _)) => Err(Issue::invalid(
-            format!("/quality/{target}"),
-            format!("with it the program chooses {name} itself, so there is nothing to sweep"),
-            format!("no {target}, or sweeps of {target} itself"),
+/// In a comparison, why the next setting of a series is not rendered: it costs more than the last one, which took long already.
+fn too_slow(sweep: &Sweep) -> Option<String> {
+    let last_ms = sweep.points.last()?.cost.wall_ms.median;
+    let is_slow = sweep.series.is_some() && last_ms > SLOW_MS;
+    is_slow.then(|| {
+        format!(
+            "the setting before it takes {} ms a frame",
+            words::ms(last_ms)
         )
-        .into()),
-    }
-}
-
-/// One setting: dials with their values.
-type DialTexts = Vec<(String, String)>;
-
-/// The sweeps: what varies, and the settings.
-fn settings_of(settings: &SweepSettings) -> Vec<(String, Vec<DialTexts>)> {
-    if !settings.grid {
-        return settings
-            .dials
-            .iter()
-            .map(|dial| {
-                let each = dial
-                    .values
-                    .iter()
-                    .map(|value| vec![(dial.name.clone(), value.clone())]);
-                (dial.name.clone(), each.collect())
-            })
-            .collect();
-    }
-    let mut all: Vec<DialTexts> = vec![Vec::new()];
-    for dial in &settings.dials {
-        all = all
-            .iter()
-            .flat_map(|setting| {
-                dial.values.iter().map(|value| {
-                    let mut longer = setting.clone();
-                    longer.push((dial.name.clone(), value.clone()));
-                    longer
-                })
-            })
-            .take(MOST_SETTINGS + 1)
-            .collect();
-    }
-    let names: Vec<&str> = settings.dials.iter().map(|d| d.name.as_str()).collect();
-    vec![(names.join(" × "), all)]
-}
-
-fn in_words(dials: &[(String, String)]) -> String {
-    let each: Vec<String> = dials
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
-    each.join(", ")
-}
-
-/// The scene with the layer that is compared; a map holds nothing else anyway.
-fn with_irradiance(resolved: &ResolvedScene) -> ResolvedScene {
-    let mut resolved = resolved.clone();
-    if let Output::View(view) = &mut resolved.scene.output
-        && !view.layers.contains(&LayerName::Irradiance)
-    {
-        view.layers.push(LayerName::Irradiance);
-        view.format = crate::scene::ImageFormat::Exr;
-    }
-    resolved
+    })
 }
 
 /// Renders once for the image and then for the clock.

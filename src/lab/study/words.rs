@@ -86,17 +86,44 @@ pub fn value(value: &Value) -> String {
     }
 }
 
-/// The values of a point's dials in the order of the sweep's name: `512`, or `512, exact`.
+/// The values of a point's dials in the order of the sweep's name: `512`, or `512, exact`. In a comparison, the numbers with their names.
 pub fn setting(sweep: &Sweep, point: &Point) -> String {
+    if sweep.series.is_some() {
+        return numbers(sweep, point);
+    }
     let texts: Vec<String> = dials(sweep, point).iter().map(|(_, v)| value(v)).collect();
     texts.join(", ")
 }
 
-/// The dials of a point with their values: `beams 512, hits exact`.
+/// The dials of a point with their values: `beams 512, hits exact`. In a comparison, after the series: `planes: water_cells 512`.
 pub fn named_setting(sweep: &Sweep, point: &Point) -> String {
+    if sweep.series.is_some() {
+        return format!("{}: {}", sweep.dial, numbers(sweep, point));
+    }
     let texts: Vec<String> = dials(sweep, point)
         .iter()
         .map(|(dial, v)| format!("{dial} {}", value(v)))
+        .collect();
+    texts.join(", ")
+}
+
+/// What stands beside a mark: the values of the dials, in a comparison that of the chief dial alone.
+pub fn label(sweep: &Sweep, point: &Point) -> String {
+    match &sweep.series {
+        Some(of) => point.dials.get(&of.chief).map_or_else(String::new, value),
+        None => setting(sweep, point),
+    }
+}
+
+/// The numbers of a point of a comparison, the chief one first: `photons 512, iterations 3`.
+fn numbers(sweep: &Sweep, point: &Point) -> String {
+    let chief = sweep.series.as_ref().map(|of| of.chief.as_str());
+    let numbers = point.dials.iter().filter(|(_, value)| value.is_number());
+    let mut numbers: Vec<(&String, &Value)> = numbers.collect();
+    numbers.sort_by_key(|(name, _)| Some(name.as_str()) != chief);
+    let texts: Vec<String> = numbers
+        .iter()
+        .map(|(name, number)| format!("{name} {}", value(number)))
         .collect();
     texts.join(", ")
 }

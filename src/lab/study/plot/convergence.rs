@@ -305,7 +305,7 @@ impl Convergence<'_> {
     fn entries(&self) -> Vec<Entry> {
         let mut entries = vec![Entry {
             sign: Sign::Marker {
-                sweep: self.marks[0].sweep,
+                shape: self.marks[0].sweep,
                 colour: self.colour(),
                 hollow: false,
             },
@@ -314,7 +314,7 @@ impl Convergence<'_> {
         if self.marks.iter().any(|mark| mark.estimated.is_some()) {
             entries.push(Entry {
                 sign: Sign::Marker {
-                    sweep: ESTIMATE,
+                    shape: ESTIMATE,
                     colour: SOFT_INK,
                     hollow: true,
                 },

@@ -11,13 +11,15 @@ use super::labels::{Area, Occupied};
 use super::legend::{self, Entry, Sign};
 use super::marker;
 use super::output::{Drawing, Plot, render};
-use super::palette::{self, INK};
-use super::series::{Mark, marks, moved_remark, subtitle};
+use super::palette::{self, GRID, INK};
+use super::series::{Look, Mark, looks, marks, moved_remark, subtitle};
+use crate::lab::study::equal_time;
 use crate::lab::study::study::Study;
 use crate::lab::study::words;
 
 /// Draws the relative L1 error over the median time of every setting of all sweeps, on logarithmic axes: whiskers from the
-/// fastest to the slowest run, the Pareto front as a line, the truth's own error dashed.
+/// fastest to the slowest run, the Pareto front as a line, the truth's own error dashed. In a comparison each method has a colour, in which
+/// its own front is drawn, and only settings on that have a label.
 ///
 /// An error of 0 is drawn at a tenth of the truth's own error, with a remark.
 ///
@@ -37,6 +39,7 @@ pub fn error_against_time(study: &Study) -> Result<Plot, PlotError> {
     errors.extend(Some(study.truth.relative_error).filter(|error| *error > 0.0));
     render(&ErrorTime {
         study,
+        looks: looks(study),
         x: LogAxis::new(&times, 1.35, 10.0, (LEFT, RIGHT)),
         y: error_axis(&errors),
         marks,
@@ -45,6 +48,7 @@ pub fn error_against_time(study: &Study) -> Result<Plot, PlotError> {
 
 struct ErrorTime<'a> {
     study: &'a Study,
+    looks: Vec<Look>,
     x: LogAxis,
     y: LogAxis,
     marks: Vec<Mark>,
@@ -54,6 +58,9 @@ const FRONT: Stroke = Stroke {
     colour: INK,
     width: 1.25,
 };
+/// Width of the Pareto front of a comparison, and of each method's front.
+const WIDE: f64 = 4.0;
+const THIN: f64 = 1.0;
 const LABEL_SIZE: f64 = 12.0;
 
 impl Drawing for ErrorTime<'_> {
@@ -62,12 +69,23 @@ impl Drawing for ErrorTime<'_> {
         draw_floor(canvas, &self.y, self.study.truth.relative_error)?;
         let front = self.front();
         for pair in front.windows(2) {
-            canvas.line(pair[0], pair[1], FRONT)?;
+            canvas.line(pair[0], pair[1], self.front_stroke())?;
+        }
+        let of_methods = self.method_fronts();
+        for (colour, spots) in &of_methods {
+            let stroke = Stroke {
+                colour: palette::sweep(*colour),
+                width: THIN,
+            };
+            for pair in spots.windows(2) {
+                canvas.line(pair[0], pair[1], stroke)?;
+            }
         }
         self.draw_whiskers(canvas)?;
         for mark in &self.marks {
-            let colour = palette::sweep(mark.sweep);
-            marker::draw(canvas, mark.sweep, self.spot(mark), colour, mark.moved)?;
+            let look = self.looks[mark.sweep];
+            let colour = palette::sweep(look.colour);
+            marker::draw(canvas, look.shape, self.spot(mark), colour, mark.moved)?;
         }
         let left_out = self.draw_labels(canvas, &front)?;
         legend::draw(canvas, &self.entries(), &self.remarks(left_out))
@@ -97,6 +115,45 @@ impl ErrorTime<'_> {
         }
     }
 
+    /// In a comparison the front is wide and pale, so that the methods' own fronts are visible on it.
+    fn front_stroke(&self) -> Stroke {
+        match self.study.is_comparison() {
+            true => Stroke {
+                colour: GRID,
+                width: WIDE,
+            },
+            false => FRONT,
+        }
+    }
+
+    /// The front of each method: its colour, and its spots, fastest first.
+    fn method_fronts(&self) -> Vec<(usize, Vec<Spot>)> {
+        let names = equal_time::methods(self.study).into_iter().enumerate();
+        names
+            .map(|(colour, name)| {
+                let own = equal_time::method_front(self.study, name);
+                let spots = own.iter().filter_map(|standing| {
+                    let mark = self.marks.iter().find(|mark| {
+                        mark.sweep == standing.sweep_index && mark.point == standing.point_index
+                    });
+                    mark.map(|mark| self.spot(mark))
+                });
+                (colour, spots.collect())
+            })
+            .collect()
+    }
+
+    /// Whether a mark has a label: all have one, in a comparison those on their method's front.
+    fn is_labelled(&self, mark: &Mark) -> bool {
+        if !self.study.is_comparison() {
+            return true;
+        }
+        let method = equal_time::method_of(&self.study.sweeps[mark.sweep]);
+        let own = equal_time::method_front(self.study, method);
+        own.iter()
+            .any(|s| s.sweep_index == mark.sweep && s.point_index == mark.point)
+    }
+
     /// The front's spots, fastest first.
     fn front(&self) -> Vec<Spot> {
         let mut front: Vec<&Mark> = self.marks.iter().filter(|mark| mark.on_front).collect();
@@ -114,7 +171,7 @@ impl ErrorTime<'_> {
         for mark in &self.marks {
             let y = self.y.at(mark.error);
             let stroke = Stroke {
-                colour: palette::sweep(mark.sweep),
+                colour: palette::sweep(self.looks[mark.sweep].colour),
                 width: LINE,
             };
             let ends = [self.x.at(mark.ms.min), self.x.at(mark.ms.max)];
@@ -153,12 +210,15 @@ impl ErrorTime<'_> {
             });
         }
         let mut left_out = 0;
-        for mark in &self.marks {
+        for mark in self.marks.iter().filter(|mark| self.is_labelled(mark)) {
             let width = canvas.text_width(&mark.label, LABEL_SIZE)?;
             match occupied.place(self.spot(mark), width, LABEL_SIZE) {
                 Some(centre) => {
-                    let style = TextStyle::new(LABEL_SIZE, palette::sweep_ink(mark.sweep))
-                        .at(HPos::Center, VPos::Center);
+                    let style = TextStyle::new(
+                        LABEL_SIZE,
+                        palette::sweep_ink(self.looks[mark.sweep].colour),
+                    )
+                    .at(HPos::Center, VPos::Center);
                     canvas.text(&mark.label, centre, style)?;
                 }
                 None => left_out += 1,
@@ -177,8 +237,8 @@ impl ErrorTime<'_> {
             .filter(|(index, _)| drawn(*index))
             .map(|(index, sweep)| Entry {
                 sign: Sign::Marker {
-                    sweep: index,
-                    colour: palette::sweep(index),
+                    shape: self.looks[index].shape,
+                    colour: palette::sweep(self.looks[index].colour),
                     hollow: false,
                 },
                 text: sweep.dial.clone(),
@@ -186,7 +246,7 @@ impl ErrorTime<'_> {
             .collect();
         if self.marks.iter().filter(|mark| mark.on_front).count() > 1 {
             entries.push(Entry {
-                sign: Sign::Line(FRONT),
+                sign: Sign::Line(self.front_stroke()),
                 text: "Pareto front: no setting is both faster and nearer".to_owned(),
             });
         }
@@ -199,8 +259,37 @@ impl ErrorTime<'_> {
         entries
     }
 
+    /// What the numbers and the thin lines are, and which methods are absent.
+    fn words_of_comparison(&self) -> String {
+        let mut chiefs: Vec<&str> = Vec::new();
+        for of in self
+            .study
+            .sweeps
+            .iter()
+            .filter_map(|sweep| sweep.series.as_ref())
+        {
+            if !chiefs.contains(&of.chief.as_str()) {
+                chiefs.push(&of.chief);
+            }
+        }
+        let mut text = format!(
+            "Thin lines: each method's own front. Numbers: {}.",
+            chiefs.join(" or ")
+        );
+        let absent: Vec<&str> = (self.study.left_out.iter())
+            .map(|left| left.series.as_str())
+            .collect();
+        if !absent.is_empty() {
+            text.push_str(&format!(" Cannot do it: {}.", absent.join("; ")));
+        }
+        text
+    }
+
     fn remarks(&self, left_out: usize) -> Vec<String> {
-        let mut remarks = vec!["Numbers beside the marks: the dial's value.".to_owned()];
+        let mut remarks = vec![match self.study.is_comparison() {
+            true => self.words_of_comparison(),
+            false => "Numbers beside the marks: the dial's value.".to_owned(),
+        }];
         remarks.extend(moved_remark(&self.marks, self.study.truth.relative_error));
         if left_out > 0 {
             remarks.push(format!(

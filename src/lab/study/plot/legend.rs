@@ -13,9 +13,9 @@ use super::palette::{INK, SOFT_INK};
 /// How an entry is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Sign {
-    /// The marker of a sweep.
+    /// A marker of this shape.
     Marker {
-        sweep: usize,
+        shape: usize,
         colour: RGBColor,
         hollow: bool,
     },
@@ -46,10 +46,10 @@ pub(super) fn draw<DB: DrawingBackend>(
         let middle = 0.5 * (left + right);
         match entry.sign {
             Sign::Marker {
-                sweep,
+                shape,
                 colour,
                 hollow,
-            } => marker::draw(canvas, sweep, (middle, y), colour, hollow)?,
+            } => marker::draw(canvas, shape, (middle, y), colour, hollow)?,
             Sign::Line(stroke) => canvas.line((left, y), (right, y), stroke)?,
             Sign::Dashed(stroke) => canvas.dashed((left, y), (right, y), 4.0, stroke)?,
         }

@@ -127,7 +127,7 @@ impl Drawing for Lines<'_> {
                 marker::draw(canvas, index, spot, colour, false)?;
             }
             let sign = Sign::Marker {
-                sweep: index,
+                shape: index,
                 colour,
                 hollow: false,
             };

@@ -29,31 +29,32 @@ const SHAPES: [&[Spot]; 6] = [
     ],
 ];
 
-/// A marker in the shape of that sweep.
+/// A marker in the shape of that index.
 pub(super) fn draw<DB: DrawingBackend>(
     canvas: &mut Canvas<'_, DB>,
-    sweep: usize,
+    index: usize,
     centre: Spot,
     colour: RGBColor,
     hollow: bool,
 ) -> Result<(), PlotError> {
     // A thin white rim keeps markers apart from lines and from one another.
-    shape(canvas, sweep, centre, RADIUS + 1.0, WHITE)?;
-    shape(canvas, sweep, centre, RADIUS, colour)?;
+    shape(canvas, index, centre, RADIUS + 1.0, WHITE)?;
+    shape(canvas, index, centre, RADIUS, colour)?;
     if hollow {
-        shape(canvas, sweep, centre, RADIUS - LINE, WHITE)?;
+        shape(canvas, index, centre, RADIUS - LINE, WHITE)?;
     }
     Ok(())
 }
 
 fn shape<DB: DrawingBackend>(
     canvas: &mut Canvas<'_, DB>,
-    sweep: usize,
+    index: usize,
     centre: Spot,
     radius: f64,
     colour: RGBColor,
 ) -> Result<(), PlotError> {
-    let corners = SHAPES[sweep % SHAPES.len()];
+    // After all shapes the colours begin again, so the shapes move on by one.
+    let corners = SHAPES[(index + index / SHAPES.len()) % SHAPES.len()];
     if corners.is_empty() {
         return canvas.disc(centre, radius, colour);
     }

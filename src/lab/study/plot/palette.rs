@@ -28,7 +28,7 @@ pub(super) const FLOOR: RGBColor = RGBColor(120, 60, 60);
 /// Paper.
 pub(in crate::lab::study) const WHITE: RGBColor = RGBColor(255, 255, 255);
 
-/// Colour of the sweep of that index.
+/// Colour of the sweep (in a comparison, the method) of that index.
 pub(super) fn sweep(index: usize) -> RGBColor {
     SWEEPS[index % SWEEPS.len()]
 }

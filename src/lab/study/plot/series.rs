@@ -1,14 +1,48 @@
 //! The values that are drawn of each setting, checked, with zeros moved to where a logarithmic axis can show them.
 
 use super::error::PlotError;
+use crate::lab::study::equal_time;
 use crate::lab::study::order::dial_number;
 use crate::lab::study::study::{SpreadMs, Study, Sweep};
 use crate::lab::study::words;
+
+/// How a sweep's marks look. In a comparison the colour is that of the method, and the shape that of the series among the method's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Look {
+    pub colour: usize,
+    pub shape: usize,
+}
+
+/// The look of each sweep.
+pub(super) fn looks(study: &Study) -> Vec<Look> {
+    let methods = equal_time::methods(study);
+    let mut looks: Vec<Look> = Vec::new();
+    for (index, sweep) in study.sweeps.iter().enumerate() {
+        let name = equal_time::method_of(sweep);
+        looks.push(match methods.iter().position(|method| *method == name) {
+            Some(colour) => {
+                let before = study.sweeps[..index].iter();
+                let before = before.filter(|other| equal_time::method_of(other) == name);
+                Look {
+                    colour,
+                    shape: before.count(),
+                }
+            }
+            None => Look {
+                colour: index,
+                shape: index,
+            },
+        });
+    }
+    looks
+}
 
 /// A setting, ready to be drawn.
 #[derive(Clone, Debug)]
 pub(super) struct Mark {
     pub sweep: usize,
+    /// Within its sweep.
+    pub point: usize,
     /// The dials' values.
     pub label: String,
     /// The dial as a number above 0, where it is one.
@@ -44,7 +78,7 @@ pub(super) fn marks(study: &Study, only: Option<usize>) -> Result<Vec<Mark>, Plo
 
 fn sweep_marks(index: usize, sweep: &Sweep, zero: f64) -> Result<Vec<Mark>, PlotError> {
     let mut marks = Vec::new();
-    for point in &sweep.points {
+    for (at, point) in sweep.points.iter().enumerate() {
         let name = words::named_setting(sweep, point);
         let (error, ms) = (&point.error, point.cost.wall_ms);
         check("relative L1 error", &name, error.relative_l1)?;
@@ -55,7 +89,8 @@ fn sweep_marks(index: usize, sweep: &Sweep, zero: f64) -> Result<Vec<Mark>, Plot
         let shown = |error: f64| if error > 0.0 { error } else { zero };
         marks.push(Mark {
             sweep: index,
-            label: words::setting(sweep, point),
+            point: at,
+            label: words::label(sweep, point),
             dial: dial_number(sweep, point),
             ms: SpreadMs {
                 median: ms.median.max(SHORTEST_MS),

@@ -1,7 +1,7 @@
 //! The report's glossary, for readers who do not know the program.
 
 /// Term and explanation.
-pub(super) const GLOSSARY: [(&str, &str); 14] = [
+pub(super) const GLOSSARY: [(&str, &str); 15] = [
     (
         "dial",
         "a setting that trades accuracy for time; a *sweep* tries several values of one dial with all else unchanged",
@@ -29,6 +29,10 @@ pub(super) const GLOSSARY: [(&str, &str); 14] = [
     (
         "bias",
         "light in excess (+) or missing (−) in total, in per cent of all light",
+    ),
+    (
+        "energy balance",
+        "the same, in comparisons of methods: light in excess (+) or missing (−) in total",
     ),
     (
         "at shadow edges",

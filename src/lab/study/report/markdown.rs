@@ -3,6 +3,7 @@
 use super::conclusions::conclusions;
 use super::csv::passes;
 use super::glossary::GLOSSARY;
+use super::methods::{method_conclusions, method_orders, method_table};
 use super::tables::{escaped, figures, pass_times};
 use crate::lab::study::study::{Study, Sweep};
 use crate::lab::study::words::{percent, significant, thousands};
@@ -12,8 +13,10 @@ use crate::lab::study::words::{percent, significant, thousands};
 pub struct ReportLinks {
     /// Error against time.
     pub error_time: Option<String>,
-    /// One per sweep.
+    /// One per sweep; none in a comparison.
     pub sweeps: Vec<SweepLinks>,
+    /// Contact sheet of a comparison.
+    pub methods: Option<String>,
     /// The study as JSON.
     pub json: Option<String>,
     /// The study as CSV.
@@ -33,11 +36,12 @@ pub struct SweepLinks {
 pub fn to_markdown(study: &Study, links: &ReportLinks) -> String {
     let mut text = heading(study);
     text += "\n## In short\n\n";
-    for sweep in &study.sweeps {
-        text += &format!("- **{}**\n", escaped(&sweep.dial));
-        for sentence in conclusions(study, sweep) {
-            text += &format!("  - {}\n", escaped(&sentence));
+    if study.is_comparison() {
+        for sentence in method_conclusions(study) {
+            text += &format!("- {}\n", escaped(&sentence));
         }
+    } else {
+        text += &by_sweep(study);
     }
     if study.sweeps.is_empty() {
         text += "Nothing was measured.\n";
@@ -46,9 +50,13 @@ pub fn to_markdown(study: &Study, links: &ReportLinks) -> String {
         text += "\n## Error against time\n\n";
         text += &picture("Error against time of all settings", link);
     }
-    for (index, sweep) in study.sweeps.iter().enumerate() {
-        let links = links.sweeps.get(index).cloned().unwrap_or_default();
-        text += &section(sweep, &links);
+    if study.is_comparison() {
+        text += &comparison(study, links);
+    } else {
+        for (index, sweep) in study.sweeps.iter().enumerate() {
+            let links = links.sweeps.get(index).cloned().unwrap_or_default();
+            text += &section(sweep, &links);
+        }
     }
     if !passes(study).is_empty() {
         text += "\n## Time of each pass\n\nMedian, ms.\n\n";
@@ -60,6 +68,34 @@ pub fn to_markdown(study: &Study, links: &ReportLinks) -> String {
         text += &format!("- **{word}**: {meaning}.\n");
     }
     text += &files(links);
+    text
+}
+
+/// The conclusions of each sweep.
+fn by_sweep(study: &Study) -> String {
+    let mut text = String::new();
+    for sweep in &study.sweeps {
+        text += &format!("- **{}**\n", escaped(&sweep.dial));
+        for sentence in conclusions(study, sweep) {
+            text += &format!("  - {}\n", escaped(&sentence));
+        }
+    }
+    text
+}
+
+/// What a comparison of methods measured.
+fn comparison(study: &Study, links: &ReportLinks) -> String {
+    let mut text = format!("\n## Settings of each method\n\n{}", method_table(study));
+    let orders = method_orders(study);
+    if !orders.is_empty() {
+        text += &format!(
+            "\n## Orders of convergence\n\nThe error falls as the method's numbers to minus this power.\n\n{orders}"
+        );
+    }
+    if let Some(link) = &links.methods {
+        text += "\n## Pictures\n\n";
+        text += &picture("Each method in about the same time, and its errors", link);
+    }
     text
 }
 

@@ -8,13 +8,15 @@ use super::csv::to_csv;
 use super::error::ReportError;
 use super::json::to_json;
 use super::markdown::{ReportLinks, SweepLinks, to_markdown};
-use crate::lab::study::error_images::error_images;
+use crate::lab::study::equal_time;
+use crate::lab::study::error_images::{error_images, method_images};
 use crate::lab::study::plot::{convergence, error_against_time};
 use crate::lab::study::study::{Study, StudyImages};
 use crate::output_files::{Pending, clear_leftovers};
 
 /// Writes `study.json`, `study.csv`, `study.md`, `error_time.svg` and `.png`, and for each sweep `convergence_<dial>.svg` and
-/// `.png` and `errors_<dial>.png` into `folder`, which is created if needed. Returns their paths, the report first.
+/// `.png` and `errors_<dial>.png` into `folder`, which is created if needed. A comparison of methods has `methods.png` instead of files
+/// for each sweep. Returns their paths, the report first.
 ///
 /// Everything is drawn before anything is written, and written to temporary files before anything is moved to its place, so a failure
 /// leaves the files of an earlier study unchanged. A sweep without settings has no pictures.
@@ -42,7 +44,16 @@ pub fn write_study(
         files.push(("error_time.svg".to_owned(), plot.svg.into_bytes()));
         files.push(("error_time.png".to_owned(), plot.png));
     }
-    for (index, name) in file_names(study).into_iter().enumerate() {
+    if let Some(limit_ms) = equal_time::limit_ms(study).filter(|_| study.is_comparison()) {
+        let sheet = method_images(study, images, limit_ms)?;
+        files.push(("methods.png".to_owned(), sheet));
+        links.methods = Some("methods.png".to_owned());
+    }
+    let names = match study.is_comparison() {
+        true => Vec::new(),
+        false => file_names(study),
+    };
+    for (index, name) in names.into_iter().enumerate() {
         let mut sweep = SweepLinks::default();
         if !study.sweeps[index].points.is_empty() {
             let plot = convergence(study, index)?;
