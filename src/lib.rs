@@ -50,10 +50,10 @@
 //! |---|---|
 //! | [`cli`] | the command line: arguments, texts and exit codes; each command is one file |
 //! | [`http`] | the HTTP service: routes and status codes; each resource is one file |
-//! | [`lab`] | studies, plots, reports, published experiments, hard cases, generated shapes; only `cli` and `http` use it |
+//! | [`lab`] | studies, comparisons of methods, plots, reports, published experiments, hard cases, generated shapes; only `cli` and `http` use it |
 //! | [`gpu_queue`] | the bounded queue and the one GPU thread; loss of the device and recovery |
 //! | [`render`] | facts + plan → frame; the self-check |
-//! | [`tuning`] | chooses dials for a target error or time |
+//! | [`tuning`] | chooses dials for a target error or time, and says which method fits an error |
 //! | [`plan`] | which results a frame needs, and the plan as text and JSON |
 //! | [`methods`] | one folder per method, published or our own; [`methods::ALL`] is the list |
 //! | [`stages`] | passes that several methods share, each with its slots |
@@ -76,7 +76,7 @@
 //! | [`stats`] | the cost of a frame, its energy account and its warnings |
 //! | [`log`] | text on its way to a stream that may block or fail |
 //! | [`config`] | every setting |
-//! | [`calibration`] | what passes cost on one machine, and how far error estimates may be off |
+//! | [`calibration`] | what passes cost on one machine, how far error estimates may be off, and what each method achieves in a time |
 
 pub mod accuracy;
 pub mod assets;

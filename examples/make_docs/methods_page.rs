@@ -61,7 +61,8 @@ fn in_equal_time(chapters: &[Chapter]) -> String {
     let mut text = format!(
         "\n## In the same time\n\n\
          The error of each method in the time that `{}` takes with 256 water cells, interpolated between its settings. The smallest of each\n\
-         scene is bold; *slower* takes longer at every setting; a dash means that the method cannot do the scene.\n\n| scene | time (ms) |",
+         scene is bold; *slower* takes longer at every setting; *the same* does what the first method does, pass by pass and bit by bit; a\n\
+         dash means that the method cannot do the scene.\n\n| scene | time (ms) |",
         methods::ALL[0].name
     );
     for method in methods::ALL {
@@ -77,6 +78,10 @@ fn in_equal_time(chapters: &[Chapter]) -> String {
         let _ = write!(text, "| [{0}](#{0}) | {limit} |", chapter.scene.name);
         for method in methods::ALL {
             let found = ranked.iter().find(|s| s.method() == method.name);
+            if found.is_some_and(|standing| standing.twin) {
+                let _ = write!(text, " *the same* |");
+                continue;
+            }
             let cell = match found.map(|standing| standing.error_in_time) {
                 Some(Some(error)) if winner == Some(method.name) => {
                     format!("**{}**", percent(error))
@@ -127,6 +132,7 @@ fn about(method: &'static Method, chapters: &[Chapter]) -> String {
 /// The scenes on which it is the nearest in the same time, or how near it comes.
 fn best_at(method: &Method, chapters: &[Chapter]) -> String {
     let mut wins = Vec::new();
+    let mut same = Vec::new();
     let mut closest: Option<(f64, &str)> = None;
     for chapter in chapters {
         let ranked = ranked(chapter);
@@ -138,6 +144,10 @@ fn best_at(method: &Method, chapters: &[Chapter]) -> String {
             continue;
         }
         let own = ranked.iter().find(|s| s.method() == method.name);
+        if own.is_some_and(|own| own.twin) {
+            same.push(chapter.scene.name);
+            continue;
+        }
         let errors = own.and_then(|s| s.error_in_time).zip(least.error_in_time);
         if let Some(factor) = errors.map(|(own, least)| own / least)
             && factor.is_finite()
@@ -146,17 +156,27 @@ fn best_at(method: &Method, chapters: &[Chapter]) -> String {
             closest = Some((factor, chapter.scene.name));
         }
     }
+    let same = match same.is_empty() {
+        true => String::new(),
+        false => format!(
+            "; it does the same as `{}` on {}",
+            methods::ALL[0].name,
+            code(&same.join(", "))
+        ),
+    };
     if !wins.is_empty() {
-        return format!("the nearest in the same time on {}", code(&wins.join(", ")));
+        let wins = code(&wins.join(", "));
+        return format!("the nearest in the same time on {wins}{same}");
     }
-    match closest {
+    let best = match closest {
         Some((factor, scene)) => format!(
             "on no scene the nearest in the same time; on {} it comes closest, with {} times the least error",
             code(scene),
             significant(factor, 2)
         ),
-        None => "nothing here: it takes longer than the others at every setting".to_owned(),
-    }
+        None => "on no scene the nearest in the same time".to_owned(),
+    };
+    best + &same
 }
 
 /// The fitted order on each scene, of the series with the least error.

@@ -9,7 +9,9 @@ use caustica::lab::study::comparison::{
     Contender, DEFAULT_RUNGS, METHOD_DIAL, RUNGS, contenders, split_list,
 };
 use caustica::lab::study::dial::{Dial, Setting, with_dials};
-use caustica::lab::study::equal_time::{best, limit_ms, method_front, methods, standings};
+use caustica::lab::study::equal_time::{
+    absent, best, is_twin, limit_ms, method_front, methods, standings,
+};
 use caustica::lab::study::error_images::method_images;
 use caustica::lab::study::order::fit_order;
 use caustica::lab::study::plot::error_against_time;
@@ -17,7 +19,7 @@ use caustica::lab::study::points::{Points, with_points};
 use caustica::lab::study::report::{
     method_conclusions, method_table, to_csv, to_json, why_not_first, write_study,
 };
-use caustica::lab::study::study::{Study, StudyImages};
+use caustica::lab::study::study::{SeriesOf, Study, StudyImages};
 use caustica::lab::study::sweep::{self, Refusal, StudyError, SweepSettings, run_study};
 use caustica::lab::study::words::{label, named_setting};
 use caustica::methods;
@@ -369,12 +371,20 @@ fn methods_that_do_not_apply_appear_with_their_reason() {
         left.contains("photon") && left.contains("caustic_volume"),
         "{left:?}"
     );
+    let said = method_conclusions(&study).join("\n");
     for left in &study.left_out {
         assert!(!methods(&study).contains(&left.method.as_str()), "{left:?}");
         assert!(left.reason.contains("light"), "{left:?}");
-        let said = method_conclusions(&study).join("\n");
-        assert!(said.contains(&left.reason), "{said}");
+        let sentence = format!("{} cannot render this scene: {}.", left.method, left.reason);
+        assert_eq!(said.matches(&sentence).count(), 1, "{sentence} in {said}");
     }
+    let mut partly = study.clone();
+    partly.left_out[0].reason = "another reason".to_owned();
+    let names: Vec<&str> = absent(&partly).into_iter().map(|(name, _)| name).collect();
+    assert!(
+        names.contains(&"photon, search exact"),
+        "reasons differ: {names:?}"
+    );
     // Alone they are a study of nothing, which is found before any time is spent.
     let alone = settings(&["photon"], 2);
     let error = sweep::check::<Infallible>(&lamps, &alone, &Limits::default()).unwrap_err();
@@ -491,6 +501,37 @@ fn methods_are_ranked_in_the_same_time() {
     let all = standings(&study, 7.0);
     assert_eq!(best(&all).unwrap().method(), "point");
     assert!(best(&standings(&study, 1.0)).is_none());
+}
+
+#[test]
+fn a_method_that_does_the_same_is_no_rival_whatever_its_times() {
+    let mut study = comparison();
+    let mut twin = study.sweeps[0].clone();
+    twin.dial = "twin".to_owned();
+    twin.series = Some(SeriesOf {
+        method: "twin".to_owned(),
+        chief: "cells".to_owned(),
+    });
+    for point in &mut twin.points {
+        point.cost.wall_ms.median *= 0.5;
+    }
+    study.sweeps.push(twin);
+    assert!(is_twin(&study, "twin"));
+    assert!(!is_twin(&study, "beam") && !is_twin(&study, "point") && !is_twin(&study, "slow"));
+    let all = standings(&study, 20.0);
+    assert_eq!(all[3].error_in_time, all[0].error_in_time);
+    assert_eq!(best(&all).unwrap().method(), "beam");
+    assert_eq!(why_not_first(&study), None);
+    let said = method_conclusions(&study).join("\n");
+    assert!(said.contains("twin does the same here as beam"), "{said}");
+    // One pass or one bit of difference makes another method of it.
+    let mut other = study.clone();
+    other.sweeps[4].points[1].error.relative_l1 *= 1.0 + 1e-15;
+    assert!(!is_twin(&other, "twin"));
+    let mut other = study;
+    other.sweeps[4].points[1].cost.passes.pop();
+    assert!(!is_twin(&other, "twin"));
+    assert_eq!(best(&standings(&other, 20.0)).unwrap().method(), "twin");
 }
 
 #[test]

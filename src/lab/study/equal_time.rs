@@ -1,7 +1,7 @@
 //! Which method is nearest to the truth in a given time.
 
 use super::pareto::{figures, front};
-use super::study::{PassCost, Point, Study, Sweep};
+use super::study::{LeftOut, PassCost, Point, Study, Sweep};
 
 /// Times within this factor of the limit are within it: medians scatter.
 const ROUND: f64 = 1.05;
@@ -18,8 +18,10 @@ pub struct Standing<'a> {
     /// Index of the setting in its series.
     pub point_index: usize,
     /// Relative L1 error in just this time: a power law between the two settings of the front around it, the last one's error beyond
-    /// them. `None` if the method takes longer at every setting.
+    /// them. `None` if the method takes longer at every setting. A twin has that of the first method.
     pub error_in_time: Option<f64>,
+    /// Whether the method does the same as the first one here ([`is_twin`]).
+    pub twin: bool,
 }
 
 impl Standing<'_> {
@@ -56,6 +58,23 @@ pub fn methods(study: &Study) -> Vec<&str> {
     names
 }
 
+/// Who cannot render the scene, and why: a method where all its series have the same reason, else a series.
+pub fn absent(study: &Study) -> Vec<(&str, &str)> {
+    let mut found: Vec<(&str, &str)> = Vec::new();
+    for left in &study.left_out {
+        let is_other =
+            |other: &&LeftOut| other.method == left.method && other.reason != left.reason;
+        let whole = study.left_out.iter().find(is_other).is_none()
+            && !methods(study).contains(&left.method.as_str());
+        let name = if whole { &left.method } else { &left.series };
+        let entry = (name.as_str(), left.reason.as_str());
+        if !found.contains(&entry) {
+            found.push(entry);
+        }
+    }
+    found
+}
+
 /// The time at which a comparison is summed up, ms: that of the first series in the middle of its settings (of four, the third).
 pub fn limit_ms(study: &Study) -> Option<f64> {
     let points = &study.sweeps.first()?.points;
@@ -63,18 +82,50 @@ pub fn limit_ms(study: &Study) -> Option<f64> {
     Some(middle.cost.wall_ms.median)
 }
 
+/// Whether a method does the same on this scene as the first one: the same passes and, to the bit, the same error at each setting of equal
+/// scale. (Methods that differ in how they light meshes are the same where there are none.) Their times then differ by chance only.
+pub fn is_twin(study: &Study, method: &str) -> bool {
+    let Some(first) = study.sweeps.first() else {
+        return false;
+    };
+    let is_same = |a: &Point, b: &Point| {
+        let names = |point: &Point| -> Vec<String> {
+            let passes = point.cost.passes.iter();
+            passes.map(|pass| pass.name.clone()).collect()
+        };
+        a.error.relative_l1 == b.error.relative_l1 && names(a) == names(b)
+    };
+    let mut own = study.sweeps.iter().filter(|s| method_of(s) == method);
+    method_of(first) != method
+        && own.any(|sweep| {
+            let mut pairs = sweep.points.iter().filter_map(|point| {
+                let other = first.points.iter().find(|p| p.scale == point.scale)?;
+                Some(is_same(point, other))
+            });
+            pairs.next() == Some(true) && pairs.all(|same| same)
+        })
+}
+
 /// What each method achieves in `limit_ms`, in the order of [`methods`].
 pub fn standings(study: &Study, limit_ms: f64) -> Vec<Standing<'_>> {
+    let names = methods(study);
+    let of_first = names.first().map(|first| method_front(study, first));
     let of_method = |name: &str| {
         let own = method_front(study, name);
+        let twin = is_twin(study, name);
+        let timed = match &of_first {
+            Some(first) if twin => first,
+            _ => &own,
+        };
         let off = |standing: &Standing<'_>| (standing.ms() / limit_ms).ln().abs();
         let nearest = own.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
         Some(Standing {
-            error_in_time: error_in(&own, limit_ms),
+            error_in_time: error_in(timed, limit_ms),
+            twin,
             ..*nearest
         })
     };
-    methods(study).into_iter().filter_map(of_method).collect()
+    names.iter().copied().filter_map(of_method).collect()
 }
 
 /// The error of a front in a time.
@@ -93,7 +144,7 @@ fn error_in(front: &[Standing<'_>], limit_ms: f64) -> Option<f64> {
     })
 }
 
-/// The method that is nearest to the truth in the time.
+/// The method that is nearest to the truth in the time; of equals the first.
 pub fn best<'a, 'b>(standings: &'b [Standing<'a>]) -> Option<&'b Standing<'a>> {
     let within = standings.iter().filter(|s| s.error_in_time.is_some());
     let error = |standing: &Standing<'_>| standing.error_in_time.unwrap_or(f64::INFINITY);
@@ -110,6 +161,7 @@ fn all_points(study: &Study) -> impl Iterator<Item = Standing<'_>> {
             point,
             point_index,
             error_in_time: None,
+            twin: false,
         })
     })
 }

@@ -99,7 +99,8 @@ pub fn method_images(
             slower.join("; ")
         ));
     }
-    let absent: Vec<&str> = study.left_out.iter().map(|l| l.series.as_str()).collect();
+    let absent = equal_time::absent(study).into_iter();
+    let absent: Vec<&str> = absent.map(|(name, _)| name).collect();
     if !absent.is_empty() {
         remarks.push(format!("Cannot render this: {}.", absent.join("; ")));
     }

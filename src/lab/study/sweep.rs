@@ -305,7 +305,7 @@ fn truth_figures(truth: &Truth, edge: Option<&[bool]>) -> TruthFigures {
             truth.width, truth.height
         ),
         TruthKind::View => format!(
-            "irradiance on what the camera sees, at {compared} of its pixels (every {}th along each side)",
+            "irradiance on what the camera sees, at {compared} of its pixels (one in {} along each side)",
             truth.pixel_step
         ),
     };

@@ -276,9 +276,8 @@ impl ErrorTime<'_> {
             "Thin lines: each method's own front. Numbers: {}.",
             chiefs.join(" or ")
         );
-        let absent: Vec<&str> = (self.study.left_out.iter())
-            .map(|left| left.series.as_str())
-            .collect();
+        let absent = equal_time::absent(self.study).into_iter();
+        let absent: Vec<&str> = absent.map(|(name, _)| name).collect();
         if !absent.is_empty() {
             text.push_str(&format!(" Cannot do it: {}.", absent.join("; ")));
         }

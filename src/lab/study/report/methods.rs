@@ -6,8 +6,8 @@ use crate::lab::study::order::fit_order;
 use crate::lab::study::study::{Point, Study, Sweep};
 use crate::lab::study::words::{mib, ms, percent, setting, signed_percent, significant, spread};
 
-/// Errors that differ by less than this factor count as equal.
-const SAME: f64 = 1.05;
+/// Errors in the same time that differ by less than this factor count as equal: times scatter.
+const SAME: f64 = 1.1;
 
 /// Sentences that sum up a comparison: the best method in a time and why the first one is not it, if so; then each other method.
 /// Empty if nothing was measured.
@@ -26,15 +26,25 @@ pub fn method_conclusions(study: &Study) -> Vec<String> {
         best.method(),
         percent(least)
     )];
-    sentences.extend(why_not_first(study));
-    let others = standings.iter().filter(|s| s.method() != best.method());
-    sentences.extend(others.map(|other| beside(other, least)));
-    for left in &study.left_out {
-        sentences.push(format!(
-            "{} cannot render this scene: {}.",
-            left.series, left.reason
-        ));
-    }
+    let why = why_not_first(study);
+    // What is said of the first method in that sentence is not said again.
+    let others = standings.iter().skip(usize::from(why.is_some()));
+    let others = others.filter(|s| s.method() != best.method());
+    let others: Vec<String> = others
+        .map(|other| match other.twin {
+            true => format!(
+                "{} does the same here as {}: the same passes and the same light.",
+                other.method(),
+                standings[0].method()
+            ),
+            false => beside(other, least),
+        })
+        .collect();
+    sentences.extend(why);
+    sentences.extend(others);
+    let absent = equal_time::absent(study).into_iter();
+    sentences
+        .extend(absent.map(|(name, reason)| format!("{name} cannot render this scene: {reason}.")));
     sentences
 }
 
