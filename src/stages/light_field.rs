@@ -42,7 +42,7 @@ pub static LIGHT_FIELD: Slot = Slot {
     ..Slot::buffer(
         "light_field",
         "flux per area on slices, 1/m² or sr/m² for unit power, and mean direction",
-        |facts| total_bytes(facts),
+        total_bytes,
     )
 };
 

@@ -169,6 +169,16 @@ fn slices_main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     flush_account(invocation);
 }
 
+// Whether a wide footprint covers a small part of its box, and is not so much larger than the slice that rounding of its rows would show. Steep
+// waves make many such: row by row they cost only the texels that they cover.
+fn is_sliver(target_map: Target, uv: mat3x2f) -> bool {
+    let e1 = uv[1] - uv[0];
+    let e2 = uv[2] - uv[0];
+    let extent = max(uv[0], max(uv[1], uv[2])) - min(uv[0], min(uv[1], uv[2]));
+    let is_near = all(extent < 4.0 * vec2f(f32(target_map.width), f32(target_map.height)));
+    return is_near && 2.0 * abs(e1.x * e2.y - e1.y * e2.x) < extent.x * extent.y;
+}
+
 // Several workgroups (along y) per wide or flat footprint (along x).
 @compute @workgroup_size(64)
 fn slices_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) invocation: u32) {
@@ -184,6 +194,11 @@ fn slices_wide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
         var beside = 0.0;
         if is_segment(c.uv[0], c.uv[1], c.uv[2]) {
             if lane == 0u { beside = deposit_segment(target_map, c.uv[0], c.uv[1], c.uv[2], arriving); }
+        } else if is_sliver(target_map, c.uv) {
+            let own = footprint_of(target_map, c.uv[0], c.uv[1], c.uv[2]);
+            for (var y = own.box.first.y + i32(lane); y <= own.box.last.y; y += i32(groups.y * 64u)) {
+                beside += deposit_row(target_map, own, y, arriving);
+            }
         } else {
             beside = deposit_texels(target_map, c.uv, arriving, lane, groups.y * 64u);
         }

@@ -8,7 +8,7 @@ use crate::stages::beams::BEAMS;
 use crate::stages::deposit::CELLS_ALONG_GROUP;
 use crate::stages::light::{Light, addend_scale, light_uniform};
 use crate::stages::light_field::{LIGHT_FIELD, LIGHT_FIELDS, SLICE_ENERGY, in_words};
-use crate::stages::queues::{QUEUE_HEAD_WORDS, WIDE_GROUPS, in_columns};
+use crate::stages::queues::{QUEUE_HEAD_WORDS, in_columns};
 use crate::stages::surface::{SURFACE, wanted_for_light};
 use crate::stages::{Groups, Pass, Slot, Step, Steps};
 
@@ -30,6 +30,9 @@ gpu_struct! {
     }
 }
 
+/// Workgroups that share one wide footprint. Fewer than elsewhere, because there are more such footprints and fewer texels.
+const SHARE: u32 = 4;
+
 /// Sums of one slice.
 pub static SLICE_SUMS: Slot = Slot {
     clear: Clear::Zero(|facts, _| sum_bytes(facts)),
@@ -42,7 +45,7 @@ pub static SLICE_SUMS: Slot = Slot {
 
 /// Wide footprints on one slice, each shared by several workgroups.
 pub static SLICE_QUEUE: Slot = Slot {
-    clear: Clear::Head(&[0, WIDE_GROUPS, 1, 0]),
+    clear: Clear::Head(&[0, SHARE, 1, 0]),
     ..Slot::buffer(
         "slice_queue",
         "beams with footprints of many texels on one slice",
