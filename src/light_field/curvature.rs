@@ -2,8 +2,8 @@
 //!
 //! The paper takes the Laplacian of the times as the curvature, κ = Δφ, and its brightness as the caustic. Rays are normal to the fronts,
 //! so light that has come the path ℓ is as much brighter as the front was larger when it entered. With the front's principal
-//! curvatures κ₁ + κ₂ = Δφ, negative where light converges, that is (1 − ℓ κ₁)(1 − ℓ κ₂). We call it the *concentration*. It is 1 for a plane front, and 1 − ℓ Δφ
-//! where the water is curved in one direction only.
+//! curvatures κ₁ + κ₂ = Δφ, negative where light converges, that is (1 − ℓ κ₁)(1 − ℓ κ₂). We call it the *concentration*. It is 1 for a
+//! plane front, and 1 − ℓ Δφ where the water is curved in one direction only.
 //!
 //! Source: Mercier, eq. 3 and 4; concentration: conservation of flux along a tube of rays, ∇·(I ∇φ) = 0.
 

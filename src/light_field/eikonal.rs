@@ -64,6 +64,9 @@ pub struct EikonalField {
     pub raised_by_dissipation: f64,
     /// Cells of the narrow band whose time is not exact to rounding.
     pub unsettled: usize,
+    /// Whether the times came to rest. Polished times may not where fronts meet at large angles; then they still change by small shares
+    /// of a cell.
+    pub settled: bool,
 }
 
 impl EikonalSettings {
@@ -99,12 +102,15 @@ impl EikonalSettings {
         let front = Front::of(grid, frame, water, BAND_CELLS)?;
         let starts = with_sides(grid, &front, self.order);
         let problem = Problem::below(grid, &front, &starts, self.order);
-        let mut arrivals = match self.solver {
-            Solver::Heap => march(&problem),
-            Solver::Sweep => sweep(&problem).0,
+        let (mut arrivals, mut settled) = match self.solver {
+            Solver::Heap => (march(&problem), true),
+            Solver::Sweep => {
+                let (arrivals, report) = sweep(&problem);
+                (arrivals, report.settled)
+            }
         };
         if self.polished && self.order == Order::Second {
-            polish(&problem, &mut arrivals);
+            settled &= polish(&problem, &mut arrivals).settled;
         }
         let lost = lost_shares(&arrivals, &front);
         let Concentration {
@@ -124,6 +130,7 @@ impl EikonalSettings {
             raised,
             raised_by_dissipation,
             unsettled: front.unsettled,
+            settled,
         })
     }
 }

@@ -12,10 +12,10 @@ const BAND_POWER: i32 = 2;
 
 /// The damping band along one axis.
 ///
-/// With damping σ that depends on the position x alone, φ_tt + 2 σ φ_t + (σ² − |σ'|) φ = φ_xx lets f(t − x) e^(−∫σ dx) pass outwards
-/// exactly, whatever σ is: nothing turns back at a right angle. σ² − |σ'| − ∂²/∂x² is the square of ∂/∂x + σ, so nothing grows.
-/// Damping by 2 σ φ_t alone, as in the paper, sent an eighth of a wave of 6 cells back from a band of 8. A step is taken on φ e^(σt), so that it is
-/// stable for every σ.
+/// With damping σ that depends on the position x alone, φ_tt + 2 σ φ_t + (σ² − |σ'|) φ = φ_xx lets f(t − x) e^(−∫σ dx) pass
+/// outwards exactly, whatever σ is: nothing turns back at a right angle. σ² − |σ'| − ∂²/∂x² is the square of ∂/∂x + σ, so
+/// nothing grows. Damping by 2 σ φ_t alone, as in the paper, sent an eighth of a wave of 6 cells back from a band of 8. A step is
+/// taken on φ e^(σt), so that it is stable for every σ.
 pub(super) struct Band {
     /// e^(−σ · step), by cell.
     pub(super) left: Vec<f32>,

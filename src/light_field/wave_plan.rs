@@ -37,7 +37,7 @@ pub enum Sum {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WaveSettings {
     /// Step of time as a share of the time in which light crosses the shortest side of a cell, above 0, at most 1. Longer
-    /// steps are unstable; in shorter ones short waves fall behind.
+    /// steps are unstable; at 1 the shortest waves stay where a segment was cleared; in shorter steps short waves fall behind.
     pub courant: f64,
     /// Cells of the damping band, 4 … 64.
     pub band: usize,
@@ -56,7 +56,7 @@ pub struct WaveSettings {
 impl Default for WaveSettings {
     fn default() -> Self {
         Self {
-            courant: 1.0,
+            courant: 0.99,
             band: 16,
             pulse: Pulse::Smooth(2.0),
             sides: Sides::Absorb,

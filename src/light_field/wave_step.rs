@@ -7,9 +7,11 @@ pub(super) const SEGMENT: usize = 32;
 
 /// Factors of a step.
 ///
-/// With second differences D and λ = step / h along each axis: φ⁺ = 4 (1 + λₓ² Dₓ/4)(1 + λ_z² D_z/4)(1 + λ_d² D_d/4) φ − 2 φ − φ⁻. It is
-/// stable as long as every λ ≤ 1, and for λ = 1 exact along the axis, however short the wave: a pulse of one cell stays one.
-/// The usual scheme with seven points needs λ² ≤ 1/3 in cubes, and pulses of a few cells fall apart in it.
+/// With second differences D and λ = step / h along each axis:
+/// φ⁺ = 4 (1 + λₓ² Dₓ/4)(1 + λ_z² D_z/4)(1 + λ_d² D_d/4) φ − 2 φ − φ⁻. It is stable as long as every λ ≤ 1, and for λ = 1 exact along
+/// the axis, however short the wave: a pulse of one cell stays one. The usual scheme with seven points needs λ² ≤ 1/3 in cubes, and
+/// pulses of a few cells fall apart in it.
+///
 /// Source: Kowalczyk and van Walstijn, "Room acoustics simulation using 3-D compact explicit FDTD schemes", IEEE Trans. Audio,
 /// Speech and Language Processing 19 (2011), the interpolated wideband scheme; for unequal steps extended by the same product.
 pub(super) struct Step {

@@ -48,7 +48,7 @@ fn shaft(cells: usize) -> Grid {
 }
 
 const MIRRORS: WaveSettings = WaveSettings {
-    courant: 1.0,
+    courant: 0.99,
     band: 16,
     pulse: Pulse::Smooth(2.0),
     sides: Sides::Mirror,
@@ -60,7 +60,7 @@ const MIRRORS: WaveSettings = WaveSettings {
 #[test]
 fn a_plane_pulse_travels_at_the_speed_of_light_and_does_not_come_back() {
     let grid = shaft(160);
-    for courant in [0.5, 0.8, 0.95, 1.0] {
+    for courant in [0.5, 0.8, 0.99, 1.0] {
         let settings = WaveSettings { courant, ..MIRRORS };
         let plan = WavePlan::of(&grid, &settings, &WaveLimits::default()).unwrap();
         let mut waves = start(&grid, &settings, &flat);
@@ -94,8 +94,8 @@ fn a_plane_pulse_travels_at_the_speed_of_light_and_does_not_come_back() {
             "{courant}: speed {speed}, height {} → {}, back {back}",
             first.1, last.1
         );
-        // The default.
-        if courant == 1.0 {
+        // The default, and the longest step.
+        if courant >= 0.99 {
             assert!((speed - 1.0).abs() < 0.01, "{courant}: {speed}");
             assert!(back < 0.01, "{courant}: {back} comes back");
         }
