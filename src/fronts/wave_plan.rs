@@ -1,6 +1,6 @@
 //! Settings of a wave simulation, and what it needs, known before anything is allocated.
 
-use super::{Grid, LightFieldError, Start};
+use super::{FrontError, Grid, Start};
 
 /// Layers of cells around the simulated box that hold its edge conditions.
 pub(super) const GHOSTS: usize = 1;
@@ -112,9 +112,9 @@ impl WavePlan {
         grid: &Grid,
         settings: &WaveSettings,
         limits: &WaveLimits,
-    ) -> Result<Self, LightFieldError> {
+    ) -> Result<Self, FrontError> {
         let refuse = |setting, value, accepted| {
-            Err(LightFieldError::Setting {
+            Err(FrontError::Setting {
                 setting,
                 value,
                 accepted,
@@ -161,7 +161,7 @@ impl WavePlan {
         let steps = (path_m / step_m).ceil() as usize;
         let cell_steps = cells as f64 * steps as f64;
         if bytes > limits.bytes || cell_steps > limits.cell_steps {
-            return Err(LightFieldError::TooLarge {
+            return Err(FrontError::TooLarge {
                 bytes,
                 cells,
                 steps: steps as u64,

@@ -1,6 +1,6 @@
 //! Power laws from field values to irradiance.
 
-use caustica::light_field::{Distance, LightFieldError, PowerLaw, fit};
+use caustica::fronts::{Distance, FrontError, PowerLaw, fit};
 
 fn points(a: f64, b: f64) -> Vec<(f64, f64)> {
     let values = (1..200).map(|i| 0.02 * f64::from(i));
@@ -57,7 +57,7 @@ fn the_fit_is_the_best_there_is() {
 fn values_without_a_law_are_refused() {
     let refused = |points: &[(f64, f64)]| {
         let error = fit(points, Distance::Squares).unwrap_err();
-        assert!(matches!(error, LightFieldError::Fit { .. }), "{error}");
+        assert!(matches!(error, FrontError::Fit { .. }), "{error}");
     };
     refused(&[]);
     refused(&points(1.0, 1.0)[..2]);

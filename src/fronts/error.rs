@@ -4,7 +4,7 @@ use thiserror::Error;
 
 /// Why a light field cannot be computed.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum LightFieldError {
+pub enum FrontError {
     /// A grid without cells, with too many, or with steps that are no positive numbers.
     #[error("a grid of {size:?} cells with steps of {step_m:?} m: {reason}")]
     Grid {

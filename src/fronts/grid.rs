@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::LightFieldError;
+use super::FrontError;
 
 /// The most cells of a grid.
 pub const MOST_CELLS: usize = 1 << 28;
@@ -23,8 +23,8 @@ impl Grid {
     ///
     /// # Errors
     /// No cells, more than [`MOST_CELLS`], or lengths that are not finite and positive.
-    pub fn new(size: [usize; 3], origin_m: DVec3, step_m: DVec3) -> Result<Self, LightFieldError> {
-        let refuse = |reason| LightFieldError::Grid {
+    pub fn new(size: [usize; 3], origin_m: DVec3, step_m: DVec3) -> Result<Self, FrontError> {
+        let refuse = |reason| FrontError::Grid {
             size,
             step_m: step_m.to_array(),
             reason,
@@ -50,7 +50,7 @@ impl Grid {
     ///
     /// # Errors
     /// As [`Grid::new`].
-    pub fn filling(size: [usize; 3], low_m: DVec3, high_m: DVec3) -> Result<Self, LightFieldError> {
+    pub fn filling(size: [usize; 3], low_m: DVec3, high_m: DVec3) -> Result<Self, FrontError> {
         let counts = DVec3::from_array(size.map(|n| n.max(1) as f64));
         let step_m = (high_m - low_m) / counts;
         Self::new(size, low_m + 0.5 * step_m, step_m)

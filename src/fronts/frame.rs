@@ -19,7 +19,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::LightFieldError;
+use super::FrontError;
 
 /// Maps from world to model coordinates. Both are (x, z, depth); depth grows downwards from the level of the water.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +42,8 @@ struct Refracted {
 }
 
 impl Refracted {
-    fn of(travel: DVec3, ior: f64) -> Result<Self, LightFieldError> {
-        let refuse = |reason| LightFieldError::Light {
+    fn of(travel: DVec3, ior: f64) -> Result<Self, FrontError> {
+        let refuse = |reason| FrontError::Light {
             travel: travel.to_array(),
             ior,
             reason,
@@ -86,7 +86,7 @@ impl Frame {
     ///
     /// # Errors
     /// Light that does not go down; an index below 1.01.
-    pub fn scaled(travel: DVec3, ior: f64) -> Result<Self, LightFieldError> {
+    pub fn scaled(travel: DVec3, ior: f64) -> Result<Self, FrontError> {
         let light = Refracted::of(travel, ior)?;
         let [x, z, depth] = light.across();
         let scale = (light.cos_t - light.cos_i / ior) / light.cos_t;
@@ -102,7 +102,7 @@ impl Frame {
     ///
     /// # Errors
     /// As [`Frame::scaled`].
-    pub fn snell(travel: DVec3, ior: f64) -> Result<Self, LightFieldError> {
+    pub fn snell(travel: DVec3, ior: f64) -> Result<Self, FrontError> {
         let light = Refracted::of(travel, ior)?;
         let [x, z, depth] = light.across();
         let along = light.along * light.sin_t;

@@ -6,7 +6,7 @@
 //!
 //! Source: Mercier, §4.1 (the power law).
 
-use super::LightFieldError;
+use super::FrontError;
 
 /// Exponents that are tried.
 const EXPONENTS: [f64; 2] = [0.05, 6.0];
@@ -76,8 +76,8 @@ impl PowerLaw {
 ///
 /// # Errors
 /// Fewer than 3 points, values that are negative or not finite, or no light on either side.
-pub fn fit(points: &[(f64, f64)], distance: Distance) -> Result<Fit, LightFieldError> {
-    let refuse = |reason| LightFieldError::Fit {
+pub fn fit(points: &[(f64, f64)], distance: Distance) -> Result<Fit, FrontError> {
+    let refuse = |reason| FrontError::Fit {
         points: points.len(),
         reason,
     };

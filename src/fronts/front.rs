@@ -10,7 +10,7 @@
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::{Frame, Grid, LightFieldError};
+use super::{Frame, FrontError, Grid};
 
 /// Steps of Newton's method.
 const MOST_STEPS: usize = 40;
@@ -78,12 +78,12 @@ struct Surface<'a, F> {
 }
 
 impl<F: Fn(DVec2) -> Height> Surface<'_, F> {
-    fn height(&self, at_m: DVec2) -> Result<Height, LightFieldError> {
+    fn height(&self, at_m: DVec2) -> Result<Height, FrontError> {
         let found = (self.water)(at_m);
         if found.height_m.is_finite() && found.slope.is_finite() {
             return Ok(found);
         }
-        Err(LightFieldError::Water {
+        Err(FrontError::Water {
             x_m: at_m.x,
             z_m: at_m.y,
             height_m: found.height_m,
@@ -91,7 +91,7 @@ impl<F: Fn(DVec2) -> Height> Surface<'_, F> {
         })
     }
 
-    fn foot(&self, at_m: DVec2) -> Result<Foot, LightFieldError> {
+    fn foot(&self, at_m: DVec2) -> Result<Foot, FrontError> {
         let Height { height_m, slope } = self.height(at_m)?;
         let map = &self.frame.model_from_surface;
         let tangents = [
@@ -113,7 +113,7 @@ impl<F: Fn(DVec2) -> Height> Surface<'_, F> {
     }
 
     /// Where the surface stands above the model point (X, Z).
-    fn above(&self, model_m: DVec2, enough_m: f64) -> Result<DVec2, LightFieldError> {
+    fn above(&self, model_m: DVec2, enough_m: f64) -> Result<DVec2, FrontError> {
         let map = &self.frame.model_from_surface;
         let across = DMat2::from_cols(map.x_axis.truncate(), map.y_axis.truncate()).inverse();
         let mut at_m = across * model_m;
@@ -135,7 +135,7 @@ impl<F: Fn(DVec2) -> Height> Surface<'_, F> {
         p_m: DVec3,
         mut at_m: DVec2,
         enough_m: f64,
-    ) -> Result<(f64, DVec3, bool), LightFieldError> {
+    ) -> Result<(f64, DVec3, bool), FrontError> {
         let e = self.frame.slowness;
         let mut settled = false;
         let mut foot = self.foot(at_m)?;
@@ -172,12 +172,12 @@ impl Front {
     ///
     /// # Errors
     /// Water that is not finite or stands above the grid; a band out of range.
-    pub fn of<F>(grid: &Grid, frame: &Frame, water: &F, band: f64) -> Result<Self, LightFieldError>
+    pub fn of<F>(grid: &Grid, frame: &Frame, water: &F, band: f64) -> Result<Self, FrontError>
     where
         F: Fn(DVec2) -> Height + Sync,
     {
         if !(1.0..=8.0).contains(&band) {
-            return Err(LightFieldError::Setting {
+            return Err(FrontError::Setting {
                 setting: "band",
                 value: band,
                 accepted: "1 to 8 cells",
@@ -211,7 +211,7 @@ impl<F: Fn(DVec2) -> Height> Surface<'_, F> {
         grid: &Grid,
         [i, j]: [usize; 2],
         band: f64,
-    ) -> Result<(Column, Vec<Start>, usize), LightFieldError> {
+    ) -> Result<(Column, Vec<Start>, usize), FrontError> {
         let step_m = grid.step_m;
         let enough_m = ENOUGH * step_m.min_element();
         let top_m = grid.point_m([i, j, 0]);
@@ -219,7 +219,7 @@ impl<F: Fn(DVec2) -> Height> Surface<'_, F> {
         let foot = self.foot(at_m)?;
         let depth_m = foot.point_m.z;
         if depth_m < top_m.z - 0.5 * step_m.z {
-            return Err(LightFieldError::AboveGrid {
+            return Err(FrontError::AboveGrid {
                 x_m: top_m.x,
                 z_m: top_m.y,
                 above_m: top_m.z - depth_m,

@@ -5,8 +5,8 @@
 use glam::DVec2;
 
 use super::{
-    Arrivals, Concentration, Curvature, Dissipation, Frame, Front, Grid, Height, LightFieldError,
-    Order, PowerLaw, Problem, concentration, lost_shares, march, polish, sweep, with_sides,
+    Arrivals, Concentration, Curvature, Dissipation, Frame, Front, FrontError, Grid, Height, Order,
+    PowerLaw, Problem, concentration, lost_shares, march, polish, sweep, with_sides,
 };
 
 /// Cells of the narrow band on each side of the water. Second order needs two.
@@ -90,12 +90,7 @@ impl EikonalSettings {
     ///
     /// # Errors
     /// Water that is not finite or stands above the grid; a dissipation out of range.
-    pub fn run<F>(
-        &self,
-        grid: &Grid,
-        frame: &Frame,
-        water: &F,
-    ) -> Result<EikonalField, LightFieldError>
+    pub fn run<F>(&self, grid: &Grid, frame: &Frame, water: &F) -> Result<EikonalField, FrontError>
     where
         F: Fn(DVec2) -> Height + Sync,
     {

@@ -45,7 +45,7 @@ pub use crossing::lost_shares;
 pub use curvature::{Concentration, Curvature, concentration, laplacian_per_m};
 pub use dissipation::{Dissipated, Dissipation};
 pub use eikonal::{EikonalField, EikonalSettings, Solver};
-pub use error::LightFieldError;
+pub use error::FrontError;
 pub use fit::{Distance, Fit, PowerLaw, fit};
 pub use frame::Frame;
 pub use front::{Column, Front, Height, Start};

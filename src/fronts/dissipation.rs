@@ -7,7 +7,7 @@
 //!
 //! Source: Mercier, §3.3 and figures 5 and 6.
 
-use super::{Grid, LightFieldError};
+use super::{FrontError, Grid};
 
 /// Spreading below a threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,14 +42,14 @@ impl Dissipation {
     ///
     /// # Errors
     /// Settings out of range.
-    pub fn apply(&self, grid: &Grid, values: &mut [f32]) -> Result<Dissipated, LightFieldError> {
+    pub fn apply(&self, grid: &Grid, values: &mut [f32]) -> Result<Dissipated, FrontError> {
         for (setting, value, most, accepted) in [
             ("threshold_m", self.threshold_m, f64::MAX, "0 and more"),
             ("speed", self.speed, 10.0, "0 to 10"),
             ("damping_per_m", self.damping_per_m, 1000.0, "0 to 1000"),
         ] {
             if !(0.0..=most).contains(&value) {
-                return Err(LightFieldError::Setting {
+                return Err(FrontError::Setting {
                     setting,
                     value,
                     accepted,

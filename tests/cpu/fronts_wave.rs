@@ -1,7 +1,7 @@
 //! Light fields of the wave equation: speed, the damping band, active cells, limits, and what the sums show.
 
-use caustica::light_field::{
-    Frame, Grid, Height, LightFieldError, Pulse, Sides, Sum, WaveLimits, WavePlan, WaveReport,
+use caustica::fronts::{
+    Frame, FrontError, Grid, Height, Pulse, Sides, Sum, WaveLimits, WavePlan, WaveReport,
     WaveSettings, Waves,
 };
 use glam::{DVec2, DVec3};
@@ -172,7 +172,7 @@ fn five_hundred_and_twelve_cubed_is_refused_with_numbers() {
     };
     let error = of(512).unwrap_err();
     println!("{error}");
-    let LightFieldError::TooLarge {
+    let FrontError::TooLarge {
         bytes,
         cells,
         steps,

@@ -1,7 +1,7 @@
 //! Eikonal light fields against closed forms: planes, spheres, exact refraction, crossing rays.
 
-use caustica::light_field::{
-    Arrivals, Curvature, Dissipation, EikonalSettings, Frame, Front, Grid, Height, LightFieldError,
+use caustica::fronts::{
+    Arrivals, Curvature, Dissipation, EikonalSettings, Frame, Front, FrontError, Grid, Height,
     Order, Problem, Solver, Start, concentration, laplacian_per_m, lost_shares, march, polish,
     sweep, with_sides,
 };
@@ -348,7 +348,7 @@ fn snell_frames_start_with_exact_rays() {
         }
     }
     let refused = Frame::snell(DVec3::new(1.0, 0.0, 0.0), ior).unwrap_err();
-    assert!(matches!(refused, LightFieldError::Light { .. }));
+    assert!(matches!(refused, FrontError::Light { .. }));
     assert!(Frame::scaled(DVec3::Z, 1.0).is_err());
 }
 
@@ -634,10 +634,7 @@ fn what_cannot_be_computed_is_refused() {
         slope: DVec2::ZERO,
     };
     let error = Front::of(&grid, &Frame::NORMAL, &high, 2.0).unwrap_err();
-    assert!(
-        matches!(error, LightFieldError::AboveGrid { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, FrontError::AboveGrid { .. }), "{error}");
     let broken = |p: DVec2| Height {
         height_m: if p.x > 0.5 { f64::NAN } else { 0.0 },
         slope: DVec2::ZERO,
@@ -653,7 +650,7 @@ fn what_cannot_be_computed_is_refused() {
     ] {
         let refused = Grid::new(size, DVec3::ZERO, DVec3::splat(step_m));
         assert!(
-            matches!(refused, Err(LightFieldError::Grid { .. })),
+            matches!(refused, Err(FrontError::Grid { .. })),
             "{size:?} {step_m}"
         );
     }

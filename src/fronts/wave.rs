@@ -16,9 +16,7 @@ use rayon::prelude::*;
 use super::wave_band::Band;
 use super::wave_plan::GHOSTS;
 use super::wave_step::{SEGMENT, Step};
-use super::{
-    Frame, Front, Grid, Height, LightFieldError, Pulse, Sides, Sum, WavePlan, WaveSettings,
-};
+use super::{Frame, Front, FrontError, Grid, Height, Pulse, Sides, Sum, WavePlan, WaveSettings};
 
 /// A share of a cell that is more than rounding.
 const EVEN: f64 = 1e-9;
@@ -65,12 +63,12 @@ impl Waves {
         settings: &WaveSettings,
         frame: &Frame,
         water: &F,
-    ) -> Result<Self, LightFieldError>
+    ) -> Result<Self, FrontError>
     where
         F: Fn(DVec2) -> Height + Sync,
     {
         if frame.slowness.length() > 0.0 {
-            return Err(LightFieldError::Setting {
+            return Err(FrontError::Setting {
                 setting: "slowness",
                 value: frame.slowness.length(),
                 accepted: "0: waves start everywhere at once",
