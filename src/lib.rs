@@ -66,6 +66,7 @@
 //! | [`assets`] | files that scenes refer to by content id |
 //! | [`waves`] | the water's surface |
 //! | [`scene`] | what a request may contain: types, ranges, parsing, validation |
+//! | [`fronts`] | fields of light from its fronts: the eikonal equation and the wave equation under water, on the CPU |
 //! | [`kept`] | computed results that may serve again, within a budget of bytes |
 //! | [`fields`] | reading arrays of numbers: NPY, EXR, 16-bit PNG |
 //! | [`mesh`] | reading OBJ, repairs with a report, ray hierarchy |
@@ -87,6 +88,7 @@ pub mod config;
 pub mod facts;
 pub mod fields;
 pub mod frame;
+pub mod fronts;
 pub mod gpu;
 pub mod gpu_queue;
 pub mod graph;
@@ -94,6 +96,7 @@ pub mod http;
 pub mod image;
 pub mod kept;
 pub mod lab;
+
 pub mod log;
 pub mod mesh;
 pub mod methods;

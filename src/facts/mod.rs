@@ -33,8 +33,8 @@ pub mod window;
 
 use glam::{DVec2, DVec3};
 
-pub use self::legs::Legs;
 pub use self::field::{FieldBox, FieldKey};
+pub use self::legs::Legs;
 pub use self::lights::{BeamSet, LightsFacts, LitLight, MOST_LIGHTS, SkyFacts};
 pub use self::method::{MethodFacts, Product};
 pub use self::output::{CameraFacts, OutputFacts, WaterMapFacts};

@@ -25,6 +25,9 @@ mod field_files;
 #[path = "../support/field_files.rs"]
 mod field_support;
 mod folder;
+mod fronts_eikonal;
+mod fronts_fit;
+mod fronts_wave;
 mod fuzz_cases;
 #[path = "../../fuzz/checks/mod.rs"]
 mod fuzz_checks;
@@ -38,6 +41,7 @@ mod kept;
 mod lamps;
 mod level_map_cache;
 mod light_field;
+
 mod listen;
 mod log;
 mod mesh_hierarchy;
