@@ -47,7 +47,8 @@ fn head(chapters: &[Chapter]) -> String {
          time grow together, by factors of two: `water_cells` from 64 to 512, a method's own dials in proportion. A method with several\n\
          numbers of its own has a second ladder, on which the first is four times as large. Each word of a dial is a series of its own. All results are\n\
          compared with the same float64 truth: relative L1 error, FLIP (what people see, 0 … 1), and the energy balance (light in\n\
-         excess or missing in total). Times are medians of warm frames. [The glossary](glossary.md) explains the terms.\n\n\
+         excess or missing in total). Times are medians of warm\n\
+         frames, each of a new moment, so that no method profits from light that it keeps. [The glossary](glossary.md) explains the terms.\n\n\
          `caustica compare SCENE -o FOLDER` makes such a comparison of any scene.\n"
     )
 }

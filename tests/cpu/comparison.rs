@@ -1,5 +1,6 @@
 //! Comparisons of methods: which series there are, what is rendered, and what the results say.
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::convert::Infallible;
 
@@ -375,7 +376,13 @@ fn methods_that_do_not_apply_appear_with_their_reason() {
     for left in &study.left_out {
         assert!(!methods(&study).contains(&left.method.as_str()), "{left:?}");
         assert!(left.reason.contains("light"), "{left:?}");
-        let sentence = format!("{} cannot render this scene: {}.", left.method, left.reason);
+    }
+    let named = absent(&study);
+    for method in ["photon", "caustic_volume"] {
+        assert!(named.iter().any(|(name, _)| *name == method), "{named:?}");
+    }
+    for (name, reason) in named {
+        let sentence = format!("{name} cannot render this scene: {reason}.");
         assert_eq!(said.matches(&sentence).count(), 1, "{sentence} in {said}");
     }
     let mut partly = study.clone();
@@ -390,6 +397,29 @@ fn methods_that_do_not_apply_appear_with_their_reason() {
     let error = sweep::check::<Infallible>(&lamps, &alone, &Limits::default()).unwrap_err();
     assert!(matches!(error, StudyError::NothingLeft(_)), "{error}");
     assert!(error.to_string().contains("point light"), "{error}");
+}
+
+#[test]
+fn every_timed_frame_shows_a_new_moment() {
+    let moments = |settings: &SweepSettings| {
+        let seen = RefCell::new(Vec::new());
+        pretended(&small("sine_pool"), settings, |scene| {
+            seen.borrow_mut().push(scene.scene.time_s);
+            1.0
+        })
+        .unwrap();
+        seen.into_inner()
+    };
+    // The first frame of each setting is compared with the truth, and shows the scene's own moment.
+    let of_methods = moments(&settings(&["level_map"], 2));
+    assert_eq!(of_methods, [0.0, 1e-3, 2e-3, 3e-3, 0.0, 1e-3, 2e-3, 3e-3]);
+    let mut grid = settings(&["level_map"], 2);
+    grid.grid = true;
+    assert_eq!(
+        moments(&grid),
+        [0.0; 4],
+        "a study of dials stays where it is"
+    );
 }
 
 #[test]

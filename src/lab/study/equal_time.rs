@@ -62,10 +62,9 @@ pub fn methods(study: &Study) -> Vec<&str> {
 pub fn absent(study: &Study) -> Vec<(&str, &str)> {
     let mut found: Vec<(&str, &str)> = Vec::new();
     for left in &study.left_out {
-        let is_other =
-            |other: &&LeftOut| other.method == left.method && other.reason != left.reason;
-        let whole = study.left_out.iter().find(is_other).is_none()
-            && !methods(study).contains(&left.method.as_str());
+        let is_other = |other: &LeftOut| other.method == left.method && other.reason != left.reason;
+        let whole =
+            !study.left_out.iter().any(is_other) && !methods(study).contains(&left.method.as_str());
         let name = if whole { &left.method } else { &left.series };
         let entry = (name.as_str(), left.reason.as_str());
         if !found.contains(&entry) {

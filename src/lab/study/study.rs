@@ -144,7 +144,8 @@ pub struct ErrorFigures {
     pub estimated: Option<f64>,
 }
 
-/// What a setting costs: warm runs, pipelines and level maps there already.
+/// What a setting costs: warm runs, pipelines and level maps there already. In a comparison of methods each run shows the water a moment
+/// later, so that nothing of its light is there already.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CostFigures {
     /// Runs behind the figures.

@@ -42,7 +42,10 @@ pub static PASS: Pass = Pass {
     views: &[],
     wanted: |facts| {
         if !has_flat_shadows(facts) {
-            return Err("shadows are not those of flat water".to_owned());
+            return Err(format!(
+                "method {} takes no shadows from flat water here (its dial `shadows`)",
+                facts.method.name
+            ));
         }
         wanted_for_objects(facts)
     },

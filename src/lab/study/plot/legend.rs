@@ -30,9 +30,27 @@ pub(super) struct Entry {
     pub text: String,
 }
 
-const SIZE: f64 = 13.0;
-const STEP: f64 = 22.0;
 const SIGN_WIDTH: f64 = 22.0;
+/// More entries than this are set in small type.
+const MOST_LARGE: usize = 14;
+
+/// Size of the letters, from line to line, and what an entry has below it.
+struct Type {
+    size: f64,
+    line: f64,
+    gap: f64,
+}
+
+const LARGE: Type = Type {
+    size: 13.0,
+    line: 17.0,
+    gap: 5.0,
+};
+const SMALL: Type = Type {
+    size: 11.0,
+    line: 13.0,
+    gap: 4.0,
+};
 
 /// Draws the entries from the top down, then the remarks, wrapped.
 pub(super) fn draw<DB: DrawingBackend>(
@@ -41,6 +59,10 @@ pub(super) fn draw<DB: DrawingBackend>(
     remarks: &[String],
 ) -> Result<(), PlotError> {
     let mut y = TOP + 8.0;
+    let set = match entries.len() > MOST_LARGE {
+        true => SMALL,
+        false => LARGE,
+    };
     for entry in entries {
         let (left, right) = (LEGEND_LEFT, LEGEND_LEFT + SIGN_WIDTH);
         let middle = 0.5 * (left + right);
@@ -53,12 +75,12 @@ pub(super) fn draw<DB: DrawingBackend>(
             Sign::Line(stroke) => canvas.line((left, y), (right, y), stroke)?,
             Sign::Dashed(stroke) => canvas.dashed((left, y), (right, y), 4.0, stroke)?,
         }
-        let style = TextStyle::new(SIZE, INK);
-        for line in wrapped(canvas, &entry.text, SIZE, LEGEND_RIGHT - right - 8.0)? {
+        let style = TextStyle::new(set.size, INK);
+        for line in wrapped(canvas, &entry.text, set.size, LEGEND_RIGHT - right - 8.0)? {
             canvas.text(&line, (right + 8.0, y), style)?;
-            y += 17.0;
+            y += set.line;
         }
-        y += STEP - 17.0;
+        y += set.gap;
     }
     y += 10.0;
     for remark in remarks {

@@ -1,16 +1,18 @@
 //! Colours. Sweeps: Okabe and Ito, "Color Universal Design" (2008), which people with any kind of colour vision can distinguish;
-//! without its black (used for the front) and yellow (too pale for lines on white).
+//! without its black (used for the front) and yellow (too pale for lines on white); a violet and a brown of other lightness follow.
 
 use plotters::style::RGBColor;
 
 /// One per sweep, again from the start when there are more.
-pub(super) const SWEEPS: [RGBColor; 6] = [
+pub(super) const SWEEPS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
+    RGBColor(91, 44, 131),
+    RGBColor(122, 92, 46),
 ];
 
 /// Text and axes.

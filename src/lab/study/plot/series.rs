@@ -1,6 +1,7 @@
 //! The values that are drawn of each setting, checked, with zeros moved to where a logarithmic axis can show them.
 
 use super::error::PlotError;
+use super::palette;
 use crate::lab::study::equal_time;
 use crate::lab::study::order::dial_number;
 use crate::lab::study::study::{SpreadMs, Study, Sweep};
@@ -25,7 +26,8 @@ pub(super) fn looks(study: &Study) -> Vec<Look> {
                 let before = before.filter(|other| equal_time::method_of(other) == name);
                 Look {
                     colour,
-                    shape: before.count(),
+                    // After all colours the first begins again, with the next shape.
+                    shape: before.count() + colour / palette::SWEEPS.len(),
                 }
             }
             None => Look {
