@@ -140,7 +140,7 @@ fn points_have_the_light_of_the_plain_program() {
         json!({ "kind": "irradiance_map", "receiver": "floor", "width": 96, "height": 64 });
     let on_box = json!({ "kind": "irradiance_map", "receiver": 0 });
     let mut under_water = pool(sun(), view());
-    under_water["camera"] = json!({ "position_m": [-1.2, -0.9, 1.4], "target_m": [0.1, -1.0, 0.2], "vertical_fov_deg": 75 });
+    under_water["camera"] = json!({ "position_m": [-1.2, -0.9, 1.4], "target_m": [0.1, -1.15, 0.2], "vertical_fov_deg": 40 });
     let mut parallel = pool(sun(), view());
     parallel["camera"] = json!({ "kind": "orthographic", "height_m": 1.2, "position_m": [0, 2, 2], "target_m": [0, -1.2, 0] });
     let mut steep = pool(sun(), view());
@@ -220,7 +220,7 @@ fn the_comparison_rejects_planted_errors() {
         ),
         ("abs(shares.zx)", "abs(shares.xz)"),
         ("-(to_eye.xz + volume", "-(to_eye.xz - volume"),
-        ("rise_m / to_eye.y", "0.9 * rise_m / to_eye.y"),
+        ("to_eye.y > 0.0", "to_eye.y < 0.0"),
         ("entering * densities", "densities"),
     ];
     let mesh = ramp();
@@ -396,7 +396,8 @@ fn flat_water_is_even() {
 /// more.
 #[test]
 fn scaled_intensities_keep_the_flux_where_light_folds() {
-    const DEPTHS: u32 = 16;
+    const DEPTHS: u32 = 32;
+    const WIDTH: u32 = 2048;
     let plate = plate();
     let planes = 5;
     // What the shader takes as the range of depths: from the crests to the floor, with a thousandth of room.
@@ -404,7 +405,7 @@ fn scaled_intensities_keep_the_flux_where_light_folds() {
     let room_m = (floor_m + crest_m) * 1e-3 + 1e-6;
     let gap_m = (floor_m + crest_m + 2.0 * room_m) / f64::from(planes);
     // The first focus is 0.6 m deep, in the third sub-volume.
-    for number in [1, 2, 3] {
+    for number in [1, 2] {
         let mut sums = [0.0; 3];
         for k in 0..DEPTHS {
             let down = (f64::from(k) + 0.5) / f64::from(DEPTHS);
@@ -412,10 +413,14 @@ fn scaled_intensities_keep_the_flux_where_light_folds() {
             let mut scene = ramp_under(&plate, crest_m);
             scene["water"]["absorption_per_m"] = json!([0, 0, 0]);
             scene["objects"][0]["translation_m"] = json!([0, -depth_m, 0]);
-            scene["quality"]["level_map_texels"] = json!(64);
+            // A line across two waves, from just above the plate: light has bright edges that take many points.
+            scene["output"] = json!({ "kind": "view", "width": WIDTH, "height": 2, "layers": ["irradiance"], "format": "exr" });
+            scene["camera"] = json!({ "kind": "orthographic", "position_m": [0, 0.02 - depth_m, 0], "target_m": [0, -depth_m, 0],
+                                      "up": [0, 0, -1], "height_m": 2.0 * 2.0 / f64::from(WIDTH) });
             let of = |choice: &MethodChoice| {
-                let map = Map::from(&with(scene.clone(), choice, &[Arc::clone(&plate)]));
-                map.values().iter().sum::<f64>()
+                let resolved = with(scene.clone(), choice, &[Arc::clone(&plate)]);
+                let lit = harness::layer(&harness::render(&resolved), LayerName::Irradiance);
+                lit.iter().map(|lit| lit[0]).sum::<f64>()
             };
             sums[0] += of(&MethodChoice::named(caustic_volume::METHOD.name));
             let ratio = Dials {
