@@ -13,7 +13,7 @@
 //!
 //! - *Shade* ([`SHADE`]). Gouraud shading of the front face gives a point the intensity of another place, up to a sub-volume nearer to the eye.
 //!   It is an artefact of the hardware: light on a surface then depends on where it is seen from, and the error falls only with the first
-//!   power of the number of planes. Intensity interpolated at the point itself costs less here and its error falls with the second power.
+//!   power of the number of planes. Intensity interpolated at the point itself is simpler here, and its error falls with the second power.
 //! - *Intensity* ([`INTENSITY`]). The flux ratio is inversely proportional to a triangle's area. Interpolated linearly between areas of the
 //!   ratio r, a sub-volume gives (r + 1/r + 4) / 6 times its flux, without bound where a triangle lies at a focus. Scaled, every sub-volume
 //!   gives just its flux, also where it crosses itself: then its area passes through 0 between the planes, and the triangles are turned over.
