@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::geometry::instances;
 use super::{RenderError, Renderer};
 use crate::facts::SceneFacts;
 use crate::gpu::uniforms::Placed;
@@ -319,9 +320,8 @@ impl Renderer {
         write(&WAVES, &|| {
             bytemuck::cast_slice(&facts.water.surface.gpu_elements()).to_vec()
         });
-        write(&INSTANCES, &|| match self.geometry.in_use() {
-            Some(geometry) => bytemuck::cast_slice(&geometry.instances(facts)).to_vec(),
-            None => Vec::new(),
+        write(&INSTANCES, &|| {
+            bytemuck::cast_slice(&instances(self.geometry.in_use(), facts)).to_vec()
         });
         write(&ALL_RECEIVERS, &|| {
             let lights = 0..facts.lights.lit.len();

@@ -14,7 +14,7 @@ use crate::stages::gpu_values::vec4;
 use crate::stages::objects::Instance;
 
 /// Where a mesh lies in the buffer, in 16-byte units.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Place {
     pub(super) first_node: u32,
     pub(super) nodes: u32,
@@ -165,40 +165,40 @@ impl Geometry {
     pub(super) fn bytes(&self) -> u64 {
         self.buffer.size()
     }
+}
 
-    /// The scene's objects as instances.
-    pub(super) fn instances(&self, facts: &SceneFacts) -> Vec<Instance> {
-        let hierarchy = hierarchy_over(&facts.receivers.objects);
-        facts
-            .receivers
-            .objects
-            .iter()
-            .enumerate()
-            .map(|(index, object)| {
-                let inverse = object.local_from_mesh.inverse();
-                let place = self.place(&object.mesh);
-                let row = |i: usize| vec4(inverse.matrix3.row(i), inverse.translation[i]);
-                let mut nodes = [[0; 4]; 4];
-                for (words, node) in nodes
-                    .chunks_exact_mut(2)
-                    .zip(hierarchy.iter().skip(2 * index))
-                {
-                    words.copy_from_slice(&node_words(node));
-                }
-                Instance {
-                    mesh_x: row(0),
-                    mesh_y: row(1),
-                    mesh_z: row(2),
-                    albedo: object.albedo.map_or([0.0; 4], |a| vec4(a, 1.0)),
-                    nodes,
-                    first_node: place.first_node,
-                    node_count: place.nodes,
-                    first_triangle: place.first_triangle,
-                    pad: 0,
-                }
-            })
-            .collect()
-    }
+/// The scene's objects as instances; without the geometry of their meshes, for passes that only need to know how objects are placed.
+pub(super) fn instances(geometry: Option<&Geometry>, facts: &SceneFacts) -> Vec<Instance> {
+    let hierarchy = hierarchy_over(&facts.receivers.objects);
+    facts
+        .receivers
+        .objects
+        .iter()
+        .enumerate()
+        .map(|(index, object)| {
+            let inverse = object.local_from_mesh.inverse();
+            let place = geometry.map_or_else(Place::default, |all| all.place(&object.mesh));
+            let row = |i: usize| vec4(inverse.matrix3.row(i), inverse.translation[i]);
+            let mut nodes = [[0; 4]; 4];
+            for (words, node) in nodes
+                .chunks_exact_mut(2)
+                .zip(hierarchy.iter().skip(2 * index))
+            {
+                words.copy_from_slice(&node_words(node));
+            }
+            Instance {
+                mesh_x: row(0),
+                mesh_y: row(1),
+                mesh_z: row(2),
+                albedo: object.albedo.map_or([0.0; 4], |a| vec4(a, 1.0)),
+                nodes,
+                first_node: place.first_node,
+                node_count: place.nodes,
+                first_triangle: place.first_triangle,
+                pad: 0,
+            }
+        })
+        .collect()
 }
 
 /// A hierarchy over the objects' bounds.

@@ -12,9 +12,9 @@ use super::scene_files;
 
 const IOR: f64 = 1.333;
 
-/// Maps and cells as fine as a floor asks for that reaches from the camera to the horizon.
+/// Maps and cells as fine as a floor asks for that begins next to the camera.
 const FINE: [(&str, &str); 2] = [
-    ("/quality/map_texels", "4096"),
+    ("/quality/map_texels", "2048"),
     ("/quality/water_cells", "1024"),
 ];
 
@@ -35,7 +35,11 @@ fn error_of(name: &str, overrides: &[(&str, &str)]) -> f64 {
         ("/output/format", "exr"),
         ("/quality/pixel_samples", "1"),
     ];
-    let resolved = scene_files::load(name, &[&sharp, overrides].concat());
+    let mut resolved = scene_files::load(name, &[&sharp, overrides].concat());
+    if let Some(floor) = &mut resolved.scene.floor {
+        // A smaller floor has smaller texels.
+        floor.size_m = floor.size_m.map(|side| side.min(6.0));
+    }
     let settings = TruthSettings {
         target_error: Some(3e-3),
         most_points: 2500,

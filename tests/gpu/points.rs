@@ -49,6 +49,20 @@ fn texels_of_the_floor_lie_where_the_map_says() {
     }
 }
 
+/// A level map that is kept needs no geometry, but how the object is placed still has to be known.
+#[test]
+fn texels_of_an_object_lie_there_too_after_a_frame_with_other_objects() {
+    let resolved = scene_files::scene(pool(json!({ "kind": "irradiance_map", "receiver": 0 })));
+    let mut other = pool(json!({ "kind": "view", "width": 16, "height": 16 }));
+    other["objects"][0]["rotation"] = json!([0, 0, 0, 1]);
+    let other = scene_files::scene(other);
+    let mut renderer = harness::renderer();
+    let never = CancellationToken::new();
+    let before = renderer.points(&resolved, &never).unwrap();
+    renderer.render(&other, &never).unwrap();
+    assert_eq!(renderer.points(&resolved, &never).unwrap(), before);
+}
+
 /// Texels of a box lie on its faces, with the faces' normals, turned with the object.
 #[test]
 fn texels_of_an_object_lie_on_its_surface() {
