@@ -71,9 +71,9 @@ fn view(name: &str, pixels: u32) -> Result<ResolvedScene, Box<dyn Error>> {
     Ok(resolved)
 }
 
-fn with(resolved: &ResolvedScene, method: MethodChoice) -> ResolvedScene {
+fn with(resolved: &ResolvedScene, method: &MethodChoice) -> ResolvedScene {
     let mut resolved = resolved.clone();
-    resolved.scene.quality.method = caustica::methods::shortest(&method);
+    resolved.scene.quality.method = caustica::methods::shortest(method);
     resolved
 }
 
@@ -112,7 +112,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 fn photon_cost(renderer: &mut Renderer) -> Result<String, Box<dyn Error>> {
     let mut scene = view("teapot_pool", 512)?;
     scene.scene.quality.water_cells = MIHALIK_CELLS;
-    let lit = with(&scene, photons(256, &[]));
+    let lit = with(&scene, &photons(256, &[]));
     let mut dark = lit.clone();
     dark.scene
         .lights
@@ -147,7 +147,7 @@ fn photon_textures(renderer: &mut Renderer) -> Result<String, Box<dyn Error>> {
     for word in ["atomic", photon::DRAWN] {
         let mut row = Vec::new();
         for (texels, _) in TEXTURES {
-            let lit = with(&scene, photons(texels, &[(&photon::DEPOSIT, word)]));
+            let lit = with(&scene, &photons(texels, &[(&photon::DEPOSIT, word)]));
             row.push(measure(renderer, &lit)?.frame_ms);
         }
         times.push((word, row));
@@ -187,7 +187,7 @@ fn photon_search(renderer: &mut Renderer) -> Result<String, Box<dyn Error>> {
         let scene = load(name, Points::Map, &[])?;
         let choice = || photons(256, &[]).with(&photon::PHOTONS_PER_SIDE, 512_u32);
         let mut light = |choice: MethodChoice| -> Result<Vec<f32>, Box<dyn Error>> {
-            let frame = renderer.render(&with(&scene, choice), &never)?;
+            let frame = renderer.render(&with(&scene, &choice), &never)?;
             Ok(frame.layers[&LayerName::Irradiance].data.clone())
         };
         let exact = light(choice().with(&photon::SEARCH, photon::EXACT))?;
@@ -211,7 +211,7 @@ fn volumes(renderer: &mut Renderer) -> Result<String, Box<dyn Error>> {
     for (scene, name, cells, pixels, fps) in VOLUMES {
         let mut resolved = with(
             &view(name, pixels)?,
-            MethodChoice::named(caustic_volume::METHOD.name),
+            &MethodChoice::named(caustic_volume::METHOD.name),
         );
         resolved.scene.quality.water_cells = cells;
         let found = measure(renderer, &resolved)?;

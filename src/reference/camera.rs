@@ -208,12 +208,12 @@ impl<'a> Viewer<'a> {
             weight: 1.0,
             wet_m: 0.0,
         };
-        self.follow(at, start, bounces, &mut all);
+        self.follow(at, &start, bounces, &mut all);
         all
     }
 
     /// Adds the ways that continue `way`.
-    fn follow(&mut self, at: DVec2, way: Way, bounces: u32, all: &mut Vec<Leg>) {
+    fn follow(&mut self, at: DVec2, way: &Way, bounces: u32, all: &mut Vec<Leg>) {
         let may_turn = (way.turns.len() as u32) < bounces;
         let meets = self.meet_water(way.ray, way.above);
         let until_m = match meets {
@@ -251,7 +251,7 @@ impl<'a> Viewer<'a> {
                     weight: way.weight * share,
                     wet_m: wet(until_m),
                 };
-                self.follow(at, next, bounces, all);
+                self.follow(at, &next, bounces, all);
             }
         }
     }

@@ -59,12 +59,10 @@ pub fn with_points(
 }
 
 /// A view of the irradiance alone.
-fn irradiance(view: ViewOutput) -> Output {
-    Output::View(ViewOutput {
-        layers: vec![LayerName::Irradiance],
-        format: ImageFormat::Exr,
-        ..view
-    })
+fn irradiance(mut view: ViewOutput) -> Output {
+    view.layers = vec![LayerName::Irradiance];
+    view.format = ImageFormat::Exr;
+    Output::View(view)
 }
 
 fn map_of(scene: &Scene) -> Result<Output, SceneError> {
