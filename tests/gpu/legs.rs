@@ -111,10 +111,9 @@ fn dark_box(at_m: [f64; 3], side_m: f64) -> Value {
     })
 }
 
-/// The middle of what is missing where the water is seen, in pixels from the upper left corner, and how much of the water's mirror image
-/// is missing there.
-fn shadow_in_the_mirror(frame: &Frame, without: &Frame, first_row: usize) -> ([f64; 2], f64) {
-    let (mut sum, mut x, mut y, mut mirror) = (0.0, 0.0, 0.0, 0.0);
+/// The middle of what is missing from `first_row` of the picture on, in pixels from its upper left corner.
+fn shadow_in_the_mirror(frame: &Frame, without: &Frame, first_row: usize) -> [f64; 2] {
+    let (mut sum, mut x, mut y) = (0.0, 0.0, 0.0);
     let pairs = pixels(frame).into_iter().zip(pixels(without)).enumerate();
     for (at, (with, without)) in pairs {
         let [column, row] = [at % 160, at / 160];
@@ -127,9 +126,8 @@ fn shadow_in_the_mirror(frame: &Frame, without: &Frame, first_row: usize) -> ([f
         sum += share;
         x += share * (column as f64 + 0.5);
         y += share * (row as f64 + 0.5);
-        mirror += without[0];
     }
-    ([x / sum, y / sum], mirror)
+    [x / sum, y / sum]
 }
 
 /// The mirror image of a small cube in flat water lies where the cube itself would be seen at −y.
@@ -141,7 +139,7 @@ fn flat_water_mirrors_things_at_their_place_under_it() {
     empty["objects"][0]["translation_m"] = json!([0, 500, 0]);
     let (seen, without) = (render(scene), render(empty));
     // The cube itself is in the upper half of the picture.
-    let (middle, _) = shadow_in_the_mirror(&seen, &without, 64);
+    let middle = shadow_in_the_mirror(&seen, &without, 64);
     let eye = glam::DVec3::new(0.3, 1.2, 3.0);
     let forward = (glam::DVec3::new(0.0, 0.0, -0.5) - eye).normalize();
     let right = forward.cross(glam::DVec3::Y).normalize();
